@@ -89,23 +89,23 @@ void tearDown(void) {
 #define TYPE_3(X, Name, values) \
     X(fmi3Get##Name(i, none, 0, values, 0)) \
     X(fmi3Set##Name(i, none, 0, values, 0))
-#define LACKING_3(X, asked) \
-    X(fmi3GetFloat32(i, none, asked, single, 0)) \
-    X(fmi3SetFloat32(i, none, asked, single, 0)) \
-    X(fmi3GetInt8(i, none, asked, signed_1, 0)) \
-    X(fmi3SetInt8(i, none, asked, signed_1, 0)) \
-    X(fmi3GetUInt8(i, none, asked, unsigned_1, 0)) \
-    X(fmi3SetUInt8(i, none, asked, unsigned_1, 0)) \
-    X(fmi3GetInt16(i, none, asked, signed_2, 0)) \
-    X(fmi3SetInt16(i, none, asked, signed_2, 0)) \
-    X(fmi3GetUInt16(i, none, asked, unsigned_2, 0)) \
-    X(fmi3SetUInt16(i, none, asked, unsigned_2, 0)) \
-    X(fmi3GetUInt32(i, none, asked, unsigned_4, 0)) \
-    X(fmi3SetUInt32(i, none, asked, unsigned_4, 0)) \
-    X(fmi3GetString(i, none, asked, text, 0)) \
-    X(fmi3SetString(i, none, asked, text, 0)) \
-    X(fmi3GetBinary(i, none, asked, &size, binary, 0)) \
-    X(fmi3SetBinary(i, none, asked, &size, binary, 0)) \
+#define LACKING_3(X, asked, given) \
+    X(fmi3GetFloat32(i, none, asked, single, given)) \
+    X(fmi3SetFloat32(i, none, asked, single, given)) \
+    X(fmi3GetInt8(i, none, asked, signed_1, given)) \
+    X(fmi3SetInt8(i, none, asked, signed_1, given)) \
+    X(fmi3GetUInt8(i, none, asked, unsigned_1, given)) \
+    X(fmi3SetUInt8(i, none, asked, unsigned_1, given)) \
+    X(fmi3GetInt16(i, none, asked, signed_2, given)) \
+    X(fmi3SetInt16(i, none, asked, signed_2, given)) \
+    X(fmi3GetUInt16(i, none, asked, unsigned_2, given)) \
+    X(fmi3SetUInt16(i, none, asked, unsigned_2, given)) \
+    X(fmi3GetUInt32(i, none, asked, unsigned_4, given)) \
+    X(fmi3SetUInt32(i, none, asked, unsigned_4, given)) \
+    X(fmi3GetString(i, none, asked, text, given)) \
+    X(fmi3SetString(i, none, asked, text, given)) \
+    X(fmi3GetBinary(i, none, asked, &size, binary, given)) \
+    X(fmi3SetBinary(i, none, asked, &size, binary, given)) \
     X(fmi3GetClock(i, none, asked, flag)) \
     X(fmi3SetClock(i, none, asked, flag)) \
     X(fmi3GetShiftDecimal(i, none, asked, real)) \
@@ -116,7 +116,7 @@ void tearDown(void) {
     X(fmi3SetShiftFraction(i, none, asked, unsigned_8, unsigned_8)) \
     X(fmi3GetIntervalFraction(i, none, asked, unsigned_8, unsigned_8, qualifier)) \
     X(fmi3SetIntervalFraction(i, none, asked, unsigned_8, unsigned_8))
-#define LACKING_AND_EMPTY(X) LACKING_3(X, 0)
+#define LACKING_AND_EMPTY(X) LACKING_3(X, 0, 0)
 #define OF_BOTH_3(X) \
     X(fmi3SetDebugLogging(i, true, 0, NULL)) \
     X(fmi3EnterConfigurationMode(i)) \
@@ -236,12 +236,14 @@ static void calls_come_in_their_order(void) {
     IS_NOT_ALLOWED(fmi3SetBoolean(i, none, 0, flag, 0))
 }
 
-#define LACKING_AND_ASKED(X) LACKING_3(X, 1)
+#define LACKING_AND_ASKED(X) LACKING_3(X, 1, 0)
+#define LACKING_AND_GIVEN(X) LACKING_3(X, 1, 1)
 
 static void what_the_fmu_lacks_is_an_empty_list(void) {
     i = make_3(false);
     LACKING_AND_EMPTY(IS_OK)
     LACKING_AND_ASKED(IS_LACKING)
+    LACKING_AND_GIVEN(IS_LACKING)
     ASSERT_REFUSED(fmi3ActivateModelPartition(i, 0, 0), "no Scheduled Execution");
     ASSERT_REFUSED(fmi3GetNumberOfVariableDependencies(i, 0, &size), "see ModelStructure");
     ASSERT_REFUSED(fmi3GetVariableDependencies(i, 0, &size, unsigned_4, &size, NULL, 1), "see ModelStructure");

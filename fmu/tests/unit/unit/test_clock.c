@@ -39,6 +39,11 @@ static void the_stop_time_is_passed_by_more_than_rounding_and_a_millionth_of_a_s
     TEST_ASSERT_TRUE(fmu_clock_passes_stop(&clock, 10.0 + 1.1e-7, 0.0));
     fmu_clock_start(&clock, 0.0, false, 10.0);
     TEST_ASSERT_FALSE(fmu_clock_passes_stop(&clock, 1e9, 0.0));
+    fmu_clock_start(&clock, 0.0, true, 0.5); /* also of less than a second */
+    TEST_ASSERT_FALSE(fmu_clock_passes_stop(&clock, 0.5 + 0.4e-9, 0.0));
+    TEST_ASSERT_TRUE(fmu_clock_passes_stop(&clock, 0.5 + 0.6e-9, 0.0));
+    fmu_clock_start(&clock, 0.0, true, 0.0); /* the border itself */
+    TEST_ASSERT_FALSE(fmu_clock_passes_stop(&clock, 0.0, 0.0));
 }
 
 static void a_time_before_the_start_is_before_it_by_more_than_rounding(void) {
@@ -55,12 +60,25 @@ static void a_solver_may_look_beyond_the_stop_by_a_fiftieth_of_the_run_on_its_wa
     TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 20.1)); /* before the first step */
     clock.completed_s = 15.0;
     TEST_ASSERT_TRUE(fmu_clock_allows_overshoot(&clock, 20.19));
-    TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 20.21));
+    TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 20.201));
     fmu_clock_start(&clock, 0.0, true, 50.0);
     clock.completed_s = 1.0;
     TEST_ASSERT_TRUE(fmu_clock_allows_overshoot(&clock, 51.0));
     clock.completed_s = 50.0;
     TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 50.5));
+}
+
+/* Importers add up their times: who has come to the stop time but for a billionth of the run has come there. */
+static void a_solver_is_on_its_way_until_a_billionth_of_the_run_is_left(void) {
+    fmu_clock clock;
+    fmu_clock_start(&clock, 0.0, true, 1e6);
+    clock.completed_s = 1e6 - 1.1e-3;
+    TEST_ASSERT_TRUE(fmu_clock_allows_overshoot(&clock, 1e6 + 1));
+    clock.completed_s = 1e6 - 0.9e-3;
+    TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 1e6 + 1));
+    fmu_clock_start(&clock, 0.0, true, 1.0);
+    clock.completed_s = 1.0 - 1e-9 * 1.0; /* the border itself */
+    TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 1.01));
 }
 
 int main(void) {
@@ -70,5 +88,6 @@ int main(void) {
     RUN_TEST(the_stop_time_is_passed_by_more_than_rounding_and_a_millionth_of_a_step);
     RUN_TEST(a_time_before_the_start_is_before_it_by_more_than_rounding);
     RUN_TEST(a_solver_may_look_beyond_the_stop_by_a_fiftieth_of_the_run_on_its_way);
+    RUN_TEST(a_solver_is_on_its_way_until_a_billionth_of_the_run_is_left);
     return UNITY_END();
 }

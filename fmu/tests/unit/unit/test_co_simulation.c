@@ -46,9 +46,60 @@ static void with_an_own_step_half_of_it_is_forgiven(void) {
     begin(0, false, 0);
     OK(step(0.0049, 0.03));
     OK(step(0.03 - 0.0049, 0.03));
-    ASSERT_REFUSED(step(0.06 + 0.0051, 0.03), "but the model is at");
-    ASSERT_REFUSED(step(0.06 - 0.0051, 0.03), "but the model is at");
+    ASSERT_REFUSED(step(0.06 + 0.00501, 0.03), "but the model is at");
+    ASSERT_REFUSED(step(0.06 - 0.00501, 0.03), "but the model is at");
     TEST_ASSERT_EQUAL_UINT64(6, ticks());
+    ASSERT_REFUSED(step(0.06 + 0.003, 0.004), "is no whole number of internal steps"); /* of a shorter step, too */
+    make(fmi2CoSimulation);
+    set("step_s", 0, 0.25);
+    begin(0, false, 0);
+    OK(step(0.125, 0.5)); /* half of it exactly */
+    OK(step(0.5 - 0.125, 0.5));
+}
+
+/* A thousandth exactly, of a step that differs from the one before by rounding. */
+static void the_border_of_what_is_forgiven_is_forgiven(void) {
+    const double step_s = 1 + 0.9e-9;
+    for (int side = -1; side <= 1; side += 2) {
+        make(fmi2CoSimulation);
+        begin(-2, false, 0);
+        OK(step(-2, 1));
+        OK(step(-1, step_s));
+        TEST_ASSERT_TRUE(instance()->clock.step_s == 1 && instance()->model.time_s == 0);
+        OK(step(side * 1e-3 * step_s, step_s));
+        TEST_ASSERT_EQUAL_UINT64(3, ticks());
+    }
+}
+
+/* Before the first second the roundings of a long run count as they do behind it. */
+static void roundings_count_on_either_side_of_zero(void) {
+    begin(-10, false, 0);
+    OK(step(-10, 1e-6));
+    instance()->clock.ticks = 10500000U;
+    instance()->model.time_s = 0.5;
+    ASSERT_REFUSED(step(0.5 + 2.2e-9, 1e-6), "but the model is at"); /* a thousandth, and ε · 0.5 s · 10.5·10⁶ */
+    OK(step(0.5 + 2.12e-9, 1e-6));
+}
+
+static void equal_steps_are_checked_each_time(void) {
+    begin(0, true, 1);
+    ASSERT_REFUSED(step(0, 0), "it must be more than 0");
+    OK(step(0, 0.5));
+    OK(step(0.5, 0.5));
+    ASSERT_REFUSED(step(1, 0.5), "goes beyond the stop time 1 s");
+    make(fmi2CoSimulation);
+    begin(0, false, 0);
+    ASSERT_REFUSED(step(0, 0), "it must be more than 0");
+    OK(step(0, 1));
+    OK(step(1, 1));
+    ASSERT_REFUSED(step(-2, 1), "the step starts at -2 s, but the model is at 2 s");
+    make(fmi2CoSimulation);
+    set("step_s", 0, 0.01);
+    begin(0, false, 0);
+    for (unsigned k = 0; k < 3; k++) {
+        OK(step(0.02 * k, 0.02));
+        TEST_ASSERT_EQUAL_UINT64(2 * k + 2, ticks());
+    }
 }
 
 /* Before the first step there is no rounding of earlier ones. */
@@ -76,6 +127,14 @@ static void steps_that_differ_by_rounding_are_one_step(void) {
     TEST_ASSERT_TRUE(ticks() == 1 && instance()->clock.step_s == 0.1 - 1.1e-10);
     OK(step(0.4, 0.1 + 0.1e-10));
     TEST_ASSERT_TRUE(ticks() == 1 && instance()->clock.step_s == 0.1 + 0.1e-10);
+    for (int side = -1; side <= 1; side += 2) { /* a billionth exactly, in bits: 2⁻³⁰ of 10⁹ · 2⁻³⁰ */
+        const double step_s = 1e9 / (1 << 30), first_s = step_s + side * 1.0 / (1 << 30);
+        make(fmi2CoSimulation);
+        begin(0, false, 0);
+        OK(step(0, first_s));
+        OK(step(first_s, step_s));
+        TEST_ASSERT_TRUE(ticks() == 2 && instance()->clock.step_s == first_s);
+    }
 }
 
 /* A remainder of time is no step; the time stays, and the next step is as before. */
@@ -86,8 +145,15 @@ static void a_millionth_of_a_step_is_none(void) {
     TEST_ASSERT_TRUE(ticks() == 1 && get("time", 0) == 0.1);
     OK(step(0.1, 0.1));
     TEST_ASSERT_TRUE(ticks() == 2 && instance()->clock.step_s == 0.1);
+    OK(step(0.2 + 0.5e-4, 0.9e-7)); /* at the importer's time */
+    TEST_ASSERT_TRUE(ticks() == 2 && get("time", 0) == 0.2);
     OK(step(0.2, 1.1e-7));
     TEST_ASSERT_TRUE(ticks() == 1 && instance()->clock.step_s == 1.1e-7);
+    make(fmi2CoSimulation);
+    begin(0, false, 0);
+    OK(step(0, 1));
+    OK(step(1, 1e-6)); /* exactly so much */
+    TEST_ASSERT_TRUE(ticks() == 1 && get("time", 0) == 1);
     make(fmi2CoSimulation);
     set("step_s", 0, 0.01);
     begin(0, false, 0);
@@ -176,8 +242,15 @@ static void a_tuned_parameter_that_is_refused_stops_the_step(void) {
 
 static fmi3Instance third;
 static int seen;
-static bool asks_at_2, asks_at_5, overloads;
+static bool asks_at_2, asks_at_4, asks_at_5, overloads, says_nothing;
 static double times[8];
+
+static double get_3(const char *name) {
+    const fmi3ValueReference reference = ref(name, 0);
+    double value = NOT_A_NUMBER;
+    OK(fmi3GetFloat64(third, &reference, 1, &value, 1));
+    return value;
+}
 
 static void between(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean set_requested, fmi3Boolean get_allowed,
                     fmi3Boolean finished, fmi3Boolean can_return, fmi3Boolean *early, fmi3Float64 *early_time) {
@@ -185,16 +258,11 @@ static void between(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean set
     const double far_too_much = 1.7e308;
     (void)e, (void)get_allowed, (void)can_return, (void)early_time;
     times[seen++] = time;
+    TEST_ASSERT_TRUE(get_3("time") == time);
     TEST_ASSERT_TRUE(finished && set_requested == (seen != 5));
     if (overloads && seen == 3) OK(fmi3SetFloat64(third, &force, 1, &far_too_much, 1));
-    *early = (asks_at_2 && seen == 2) || (asks_at_5 && seen == 5);
-}
-
-static double get_3(const char *name) {
-    const fmi3ValueReference reference = ref(name, 0);
-    double value = NOT_A_NUMBER;
-    OK(fmi3GetFloat64(third, &reference, 1, &value, 1));
-    return value;
+    if (says_nothing) return;
+    *early = (asks_at_2 && seen == 2) || (asks_at_4 && seen == 4) || (asks_at_5 && seen == 5);
 }
 
 static fmi3Status step_by_callback(bool may_return, bool *returned, double *end_s) {
@@ -220,11 +288,33 @@ static void who_may_not_return_early_does_not(void) {
     OK(step_by_callback(true, &returned, &end_s));
     TEST_ASSERT_TRUE(seen == 2 && returned && end_s == 0.02 && get_3("time") == 0.02);
     asks_at_2 = false;
+    asks_at_4 = true; /* before the last one */
+    OK(step_by_callback(true, &returned, &end_s));
+    TEST_ASSERT_TRUE(seen == 4 && returned && end_s == 0.04);
+    asks_at_4 = false;
     asks_at_5 = true; /* at its end: that is not early */
     OK(step_by_callback(true, &returned, &end_s));
     TEST_ASSERT_TRUE(seen == 5 && !returned && end_s == 0.05);
     asks_at_5 = false;
     for (int k = 0; k < 5; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.01 * (k + 1), times[k]);
+}
+
+static void who_does_not_ask_to_return_does_not(void) {
+    bool returned = true;
+    double end_s;
+    says_nothing = true;
+    OK(step_by_callback(true, &returned, &end_s));
+    says_nothing = false;
+    TEST_ASSERT_TRUE(seen == 5 && !returned && end_s == 0.05);
+    fmi3Instance alone = make_3(false); /* whose importer cannot ask */
+    OK(fmi3EnterInitializationMode(alone, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(alone));
+    for (int k = 0; k < 3; k++) {
+        returned = true;
+        OK(fmi3DoStep(alone, 0.5 * k, 0.5, true, NULL, NULL, &returned, &end_s));
+        TEST_ASSERT_TRUE(!returned && end_s == 0.5 * k + 0.5);
+    }
+    fmi3FreeInstance(alone);
 }
 
 static void a_callback_sees_every_step_also_equal_ones(void) {
@@ -259,6 +349,9 @@ int main(void) {
     RUN_TEST(a_step_that_begins_off_the_models_time_is_refused_on_either_side);
     RUN_TEST(the_roundings_of_many_steps_are_forgiven);
     RUN_TEST(with_an_own_step_half_of_it_is_forgiven);
+    RUN_TEST(the_border_of_what_is_forgiven_is_forgiven);
+    RUN_TEST(roundings_count_on_either_side_of_zero);
+    RUN_TEST(equal_steps_are_checked_each_time);
     RUN_TEST(the_first_step_begins_at_the_start);
     RUN_TEST(roundings_are_those_of_the_steps_that_were);
     RUN_TEST(steps_that_differ_by_rounding_are_one_step);
@@ -269,6 +362,7 @@ int main(void) {
     RUN_TEST(an_own_step_that_is_refused_is_not_taken);
     RUN_TEST(a_tuned_parameter_that_is_refused_stops_the_step);
     RUN_TEST(who_may_not_return_early_does_not);
+    RUN_TEST(who_does_not_ask_to_return_does_not);
     RUN_TEST(a_callback_sees_every_step_also_equal_ones);
     RUN_TEST(a_step_that_is_refused_on_its_way_goes_back_to_its_start);
     return UNITY_END();

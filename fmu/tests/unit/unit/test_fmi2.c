@@ -75,6 +75,31 @@ static void the_log_goes_to_the_importer_s_environment_in_lines_of_511_letters(v
     TEST_ASSERT_EQUAL_INT(1, told_to);
 }
 
+/* NaN has no sign: without it the line, which was cut, is a letter shorter. */
+static void a_line_that_was_cut_is_told_to_its_end(void) {
+    static char token[700];
+    memset(token, 'x', sizeof token - 1);
+    memcpy(token, "{ -nan", 6);
+    TEST_ASSERT_NULL(make_2(fmi2CoSimulation, token));
+    ASSERT_LOGGED("the token { nanxxx");
+    TEST_ASSERT_EQUAL_size_t(strlen("logStatusError: ") + 510, strlen(logged));
+}
+
+/* Which the instance keeps: the importer's memory may end with the name, and with the call. */
+static void the_log_has_the_name_of_the_instance(void) {
+    const fmi2CallbackFunctions callbacks = {log_to, calloc, free, NULL, &told_to};
+    char *const name = malloc(sizeof "one");
+    TEST_ASSERT_NOT_NULL(name);
+    memcpy(name, "one", sizeof "one");
+    fmi2FreeInstance(c);
+    c = fmi2Instantiate(name, fmi2CoSimulation, fmu_token_2, NULL, &callbacks, 0, 0);
+    memset(name, 'x', sizeof "one" - 1);
+    free(name);
+    told_to = 0;
+    TEST_ASSERT_EQUAL_INT(fmi2Error, fmi2Terminate(c));
+    TEST_ASSERT_EQUAL_INT(1, told_to);
+}
+
 /* The vehicle of the description's start values, by the core alone. */
 static void a_step_has_the_bits_of_the_core(void) {
     laconic_plant plant;
@@ -214,6 +239,7 @@ static void a_run_that_cannot_begin_says_why(void) {
                    "the start time nan is not finite");
     ASSERT_REFUSED(fmi2SetupExperiment(c, fmi2False, 0, 2, fmi2True, 1), "is before the start time");
     ASSERT_REFUSED(fmi2SetupExperiment(c, fmi2False, 0, 2, fmi2True, NOT_A_NUMBER), "the stop time nan is not finite");
+    OK(fmi2SetupExperiment(c, fmi2False, 0, 2, fmi2True, 2)); /* a run of initial values alone */
     set("mass_kg", 0, 0);
     OK(fmi2EnterInitializationMode(c));
     ASSERT_REFUSED(fmi2ExitInitializationMode(c), "mass_kg");
@@ -259,7 +285,16 @@ static void the_log_has_the_categories_that_were_chosen(void) {
     ASSERT_REFUSED(fmi2SetDebugLogging(c, fmi2True, 1, wrong), "there is no category 'logNothing'");
     ASSERT_REFUSED(fmi2SetDebugLogging(c, fmi2True, 1, null), "there is no category '(null)'");
     ASSERT_REFUSED(fmi2SetDebugLogging(c, fmi2True, 2, NULL), "2 categories and no list of them");
+    ASSERT_REFUSED(fmi2SetDebugLogging(c, fmi2True, 1, NULL), "1 categories and no list of them");
+    const fmi2String two[2] = {"logStatusError", "logEvents"}, bad[2] = {"logEvents", "logNothing"};
+    OK(fmi2SetDebugLogging(c, fmi2True, 2, two));
+    set("motor_gain_Nm_per_V", 0, 0.1);
+    log_clear();
+    (void)get("x_m", 0);
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    ASSERT_REFUSED(fmi2SetDebugLogging(c, fmi2True, 2, bad), "there is no category 'logNothing'");
     OK(fmi2SetDebugLogging(c, fmi2False, 0, NULL));
+    TEST_ASSERT_EQUAL_UINT(0, ((const fmu_instance *)c)->log_categories);
     ASSERT_REFUSED(fmi2DoStep(c, 0.2, 0, fmi2True), "more than 0"); /* errors are always told */
 }
 
@@ -310,6 +345,8 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(nothing_is_made_without_name_token_kind_or_callbacks);
     RUN_TEST(the_log_goes_to_the_importer_s_environment_in_lines_of_511_letters);
+    RUN_TEST(a_line_that_was_cut_is_told_to_its_end);
+    RUN_TEST(the_log_has_the_name_of_the_instance);
     RUN_TEST(a_step_has_the_bits_of_the_core);
     RUN_TEST(every_type_has_its_functions_and_refuses_the_others);
     RUN_TEST(each_access_is_set_in_its_modes_and_the_refusal_says_when);

@@ -146,7 +146,12 @@ static void an_importer_may_look_between_internal_steps_and_return(void) {
 }
 
 static void variables_without_intermediate_values_cannot_be_required(void) {
-    const fmi3ValueReference mass[1] = {ref("mass_kg", 0)}, none[1] = {0x7FFFFFFF};
+    const fmi3ValueReference mass[2] = {ref("mass_kg", 0), ref("x_m", 0)}, none[1] = {0x7FFFFFFF},
+                             second[2] = {ref("x_m", 0), ref("mass_kg", 0)};
+    TEST_ASSERT_NULL(fmi3InstantiateCoSimulation("a", fmu_token_3, NULL, false, true, false, false, second, 2, NULL,
+                                                 log_3, between));
+    ASSERT_LOGGED("mass_kg is required as intermediate variable, but it has no intermediate updates");
+    log_clear();
     TEST_ASSERT_NULL(
         fmi3InstantiateCoSimulation("a", fmu_token_3, NULL, false, true, false, false, mass, 1, NULL, log_3, between));
     ASSERT_LOGGED("mass_kg is required as intermediate variable, but it has no intermediate updates");
@@ -218,6 +223,19 @@ static void in_event_mode_the_number_of_wheels_stays(void) {
     ASSERT_REFUSED(fmi3SetUInt64(c, &wheels, 1, &two, 1), "wheel_count cannot be set in event mode");
 }
 
+static void the_time_is_not_set_as_a_variable(void) {
+    const fmi3ValueReference time = ref("time", 0);
+    const double later_s = 3;
+    fmi3FreeInstance(c);
+    c = make_3(true);
+    ASSERT_REFUSED(fmi3SetFloat64(c, &time, 1, &later_s, 1), "time cannot be set in instantiated: it is the time");
+    begin();
+    ASSERT_REFUSED(fmi3SetFloat64(c, &time, 1, &later_s, 1), "time cannot be set in event mode: it is the time");
+    OK(fmi3EnterStepMode(c));
+    ASSERT_REFUSED(fmi3SetFloat64(c, &time, 1, &later_s, 1), "time cannot be set in step mode: it is the time");
+    TEST_ASSERT_TRUE(get("time", 0) == 0);
+}
+
 static void an_output_depends_on_what_the_description_says(void) {
     size_t count = 0;
     const fmi3ValueReference x = ref("x_m", 0), none = 0x7FFFFFFF;
@@ -226,6 +244,11 @@ static void an_output_depends_on_what_the_description_says(void) {
     TEST_ASSERT_EQUAL_STRING("3.0", fmi3GetVersion());
     TEST_ASSERT_NULL(
         fmi3InstantiateScheduledExecution("a", fmu_token_3, NULL, false, true, NULL, log_3, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL_STRING("logStatusError: this FMU offers no Scheduled Execution", logged);
+    told_to = 0;
+    TEST_ASSERT_NULL(
+        fmi3InstantiateScheduledExecution("a", fmu_token_3, NULL, false, true, &told_to, log_to, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL_INT(1, told_to);
 }
 
 static void a_run_that_cannot_be_leaves_the_instance_where_it_was(void) {
@@ -292,6 +315,7 @@ int main(void) {
     RUN_TEST(in_event_mode_motors_are_tuned_and_the_change_is_told);
     RUN_TEST(the_log_goes_to_the_importer_s_environment);
     RUN_TEST(in_event_mode_the_number_of_wheels_stays);
+    RUN_TEST(the_time_is_not_set_as_a_variable);
     RUN_TEST(an_output_depends_on_what_the_description_says);
     RUN_TEST(a_run_that_cannot_be_leaves_the_instance_where_it_was);
     RUN_TEST(without_a_logger_nothing_is_told);

@@ -97,6 +97,45 @@ static void slip_and_lift_are_told_once_in_a_run(void) {
     }
 }
 
+/* What is told of one run is not told of the next, in which nothing slips. */
+static void a_run_after_a_reset_has_its_own_warnings(void) {
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0.02);
+    set("com_z_m", 0, 0.1);
+    initialise();
+    set("voltage_V", 1, 14);
+    OK(step(0, 0.02));
+    TEST_ASSERT_TRUE(instance()->warnings_given != 0);
+    OK(fmi2Reset(c));
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0.02);
+    set("com_z_m", 0, 0.1);
+    initialise();
+    log_clear();
+    OK(step(0, 0.02));
+    TEST_ASSERT_EQUAL_INT(0, lines);
+    set("voltage_V", 1, 14);
+    OK(step(0.02, 0.02));
+    ASSERT_LOGGED("logStatusWarning: at 0.02 s wheel 1 needs");
+}
+
+/* They state that results are invalid; what else there is to tell, only who asks for it is told. */
+static void warnings_are_told_also_where_logging_is_off(void) {
+    static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
+    fmi2FreeInstance(c);
+    c = fmi2Instantiate("one", fmi2CoSimulation, fmu_token_2, NULL, &callbacks, fmi2False, fmi2False);
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0.02);
+    set("com_z_m", 0, 0.1);
+    initialise();
+    set("motor_gain_Nm_per_V", 0, 0.21); /* an event */
+    OK(step(0, 0.01));
+    TEST_ASSERT_EQUAL_INT(0, lines);
+    set("voltage_V", 1, 14);
+    OK(step(0.01, 0.01));
+    ASSERT_LOGGED("logStatusWarning: at 0.01 s wheel 1 needs");
+}
+
 /* Within a communication step of many internal ones, at the step where it begins. */
 static void a_warning_has_the_time_of_its_internal_step(void) {
     const fmi2ValueReference voltage = ref("voltage_V", 1);
@@ -199,6 +238,8 @@ int main(void) {
     RUN_TEST(forces_beyond_the_range_are_told_in_place_of_slip_and_lift);
     RUN_TEST(a_limited_drive_on_ideal_ground_is_watched_for_slip);
     RUN_TEST(slip_and_lift_are_told_once_in_a_run);
+    RUN_TEST(a_run_after_a_reset_has_its_own_warnings);
+    RUN_TEST(warnings_are_told_also_where_logging_is_off);
     RUN_TEST(a_warning_has_the_time_of_its_internal_step);
     RUN_TEST(a_warning_within_a_held_step_has_the_time_of_its_internal_step);
     RUN_TEST(a_wheel_or_a_support_that_lifts_has_its_number);

@@ -102,11 +102,16 @@ static void time_lies_within_the_run(void) {
     OK(fmi2SetTime(c, 5));
     ASSERT_REFUSED(fmi2SetTime(c, -1), "is before the start time 0 s");
     ASSERT_REFUSED(fmi2SetTime(c, 10.1), "is beyond the stop time 10 s");
+    ASSERT_REFUSED(fmi2SetTime(c, 10 + 0.5e-6), "SetTime: 10.0000005 s is beyond the stop time 10 s");
     ASSERT_REFUSED(fmi2SetTime(c, NOT_A_NUMBER), "nan is not a time");
+    event = terminate = fmi2True;
     OK(fmi2CompletedIntegratorStep(c, fmi2True, &event, &terminate));
     TEST_ASSERT_FALSE(event || terminate);
     OK(fmi2SetTime(c, 10.1)); /* a solver on its way looks a little further */
-    ASSERT_REFUSED(fmi2CompletedIntegratorStep(c, fmi2True, &event, &terminate), "is beyond the stop time");
+    ASSERT_REFUSED(fmi2CompletedIntegratorStep(c, fmi2True, &event, &terminate),
+                   "CompletedIntegratorStep: 10.1 s is beyond the stop time 10 s");
+    OK(fmi2SetTime(c, 10 + 0.5e-6));
+    ASSERT_REFUSED(fmi2CompletedIntegratorStep(c, fmi2True, &event, &terminate), "is beyond the stop time 10 s");
     ASSERT_REFUSED(fmi2SetTime(c, 10.3), "is beyond the stop time 10 s");
     OK(fmi2SetTime(c, 10));
     OK(fmi2CompletedIntegratorStep(c, fmi2True, &event, &terminate));

@@ -192,6 +192,48 @@ static void derivatives_beyond_the_range_are_refused_and_nothing_is_written(void
     fmi3FreeInstance(i);
 }
 
+/* Of two motors, one beyond the range: the other's derivative is read, but not in a list with that one. */
+static void a_list_has_its_derivatives_as_a_whole_or_not_at_all(void) {
+    fmi3Instance i = fmi3InstantiateModelExchange("one", fmu_token_3, NULL, false, true, NULL, log_3);
+    const fmi3ValueReference of[2] = {ref("wheel_torque_Nm", 1), ref("wheel_torque_Nm", 2)},
+                             whole = ref("wheel_torque_Nm", 0), voltage = ref("voltage_V", 2),
+                             gain = ref("motor_gain_Nm_per_V", 0);
+    const double seed = 1e308, strong = 100;
+    double found[4] = {7, 7, 7, 7};
+    OK(fmi3SetFloat64(i, &gain, 1, &strong, 1));
+    OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(i));
+    ASSERT_REFUSED(fmi3GetDirectionalDerivative(i, of, 2, &voltage, 1, &seed, 1, found, 2), "wheel_torque_Nm");
+    ASSERT_REFUSED(fmi3GetDirectionalDerivative(i, &whole, 1, &voltage, 1, &seed, 1, found, 4), "wheel_torque_Nm");
+    TEST_ASSERT_TRUE(found[0] == 7 && found[1] == 7);
+    OK(fmi3GetDirectionalDerivative(i, of, 1, &voltage, 1, &seed, 1, found, 1));
+    TEST_ASSERT_TRUE(found[0] == 0);
+    fmi3FreeInstance(i);
+}
+
+/* Each unknown with its own seed, also where the list has several; what does not depend is 0 to the last bit. */
+static void an_adjoint_derivative_is_the_sum_over_all_unknowns(void) {
+    fmi3Instance i = fmi3InstantiateModelExchange("one", fmu_token_3, NULL, false, true, NULL, log_3);
+    const fmi3ValueReference of[3] = {ref("wheel_torque_Nm", 1), ref("der(x_m)", 0), ref("wheel_torque_Nm", 2)};
+    const fmi3ValueReference by[2] = {ref("voltage_V", 1), ref("voltage_V", 2)}, other = ref("voltage_V", 3);
+    const double gain = 0.2;                       /* of the description, Nm per V */
+    double *const seed = malloc(3 * sizeof *seed); /* sanitizers see what is read behind it */
+    double found[2];
+    TEST_ASSERT_NOT_NULL(seed);
+    seed[0] = 2, seed[1] = 100, seed[2] = -3;
+    OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(i));
+    OK(fmi3GetAdjointDerivative(i, of, 3, by, 2, seed, 3, found, 2));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-14, 2 * gain, found[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-14, -3 * gain, found[1]);
+    OK(fmi3GetAdjointDerivative(i, of, 3, &other, 1, seed, 3, found, 1));
+    TEST_ASSERT_TRUE(found[0] == 0);
+    OK(fmi3GetDirectionalDerivative(i, of, 3, &other, 1, seed, 1, seed, 3));
+    TEST_ASSERT_TRUE(seed[0] == 0 && seed[1] == 0 && seed[2] == 0);
+    free(seed);
+    fmi3FreeInstance(i);
+}
+
 static void a_model_that_cannot_start_has_no_derivatives(void) {
     const fmi2ValueReference rate = ref("der(nu_rad_per_s)", 1), voltage = ref("voltage_V", 1);
     double seed = 1, found = 7;
@@ -233,6 +275,19 @@ static void outputs_change_in_time_as_differences_of_short_steps_do(void) {
     TEST_ASSERT_TRUE(fabs(rate[3]) > 1);
 }
 
+static void at_rest_nothing_changes_in_time(void) {
+    const fmi2ValueReference list[3] = {ref("wheel_torque_Nm", 1), ref("x_m", 0), ref("energy_J", 0)};
+    const fmi2Integer first[3] = {1, 1, 1};
+    double rate[3];
+    make(fmi2CoSimulation);
+    initialise();
+    for (int stepped = 0; stepped < 2; stepped++) {
+        OK(fmi2GetRealOutputDerivatives(c, list, 3, first, rate));
+        TEST_ASSERT_TRUE(rate[0] == 0 && rate[1] == 0 && rate[2] == 0);
+        OK(step(0.1 * stepped, 0.1));
+    }
+}
+
 static void lists_of_orders_and_values_in_time_are_checked(void) {
     const fmi2ValueReference x = ref("x_m", 0), voltage = ref("voltage_V", 1), none = 0x7FFFFFFF;
     const fmi2Integer first = 1, second = 2;
@@ -254,6 +309,12 @@ static void lists_of_orders_and_values_in_time_are_checked(void) {
     value = NOT_A_NUMBER;
     ASSERT_REFUSED(fmi2SetRealInputDerivatives(c, &voltage, 1, &first, &value), "voltage_V: its derivative nan is not");
     OK(fmi2SetRealInputDerivatives(c, NULL, 0, NULL, NULL));
+    TEST_ASSERT_FALSE(instance()->model.sloped);
+    const fmi2ValueReference inputs[2] = {voltage, x}, outputs[2] = {x, ref("y_m", 0)}; /* the second is wrong */
+    const fmi2Integer orders[2] = {1, 2}, firsts[2] = {1, 1};
+    double values[2] = {1, 2};
+    ASSERT_REFUSED(fmi2SetRealInputDerivatives(c, inputs, 2, firsts, values), "x_m is no scalar input");
+    ASSERT_REFUSED(fmi2GetRealOutputDerivatives(c, outputs, 2, orders, values), "order 2");
     TEST_ASSERT_FALSE(instance()->model.sloped);
 }
 
@@ -283,6 +344,13 @@ static void slopes_move_their_own_inputs_for_one_step(void) {
     }
     OK(step(0.2, 0.1));
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.8, get("world_force_N", 2));
+    const fmi2ValueReference both[2] = {ref("voltage_V", 3), ref("voltage_V", 4)}; /* in one call */
+    const fmi2Integer orders[2] = {1, 1};
+    const double slopes[2] = {5, -7};
+    OK(fmi2SetRealInputDerivatives(c, both, 2, orders, slopes));
+    OK(step(0.3, 0.1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.5, get("voltage_V", 3));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, -0.7, get("voltage_V", 4));
 }
 
 int main(void) {
@@ -293,8 +361,11 @@ int main(void) {
     RUN_TEST(seeds_of_one_known_that_is_named_twice_add_up);
     RUN_TEST(lists_that_are_missing_are_refused_and_empty_ones_are_not);
     RUN_TEST(derivatives_beyond_the_range_are_refused_and_nothing_is_written);
+    RUN_TEST(a_list_has_its_derivatives_as_a_whole_or_not_at_all);
+    RUN_TEST(an_adjoint_derivative_is_the_sum_over_all_unknowns);
     RUN_TEST(a_model_that_cannot_start_has_no_derivatives);
     RUN_TEST(outputs_change_in_time_as_differences_of_short_steps_do);
+    RUN_TEST(at_rest_nothing_changes_in_time);
     RUN_TEST(lists_of_orders_and_values_in_time_are_checked);
     RUN_TEST(slopes_move_their_own_inputs_for_one_step);
     return UNITY_END();

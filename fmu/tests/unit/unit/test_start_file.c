@@ -8,7 +8,7 @@
 #define TOKEN "{of-a-scene}"
 
 static char folder[256], file[300];
-static uint8_t bytes[4096];
+static uint8_t bytes[65536 + 8];
 
 void setUp(void) {
     log_clear();
@@ -81,6 +81,13 @@ static fmi2Component at(const char *resources) {
     return fmi2Instantiate("one", fmi2CoSimulation, TOKEN, resources, &callbacks, fmi2False, fmi2True);
 }
 
+/* What the bytes say of themselves. */
+static void seal(size_t size) {
+    const uint32_t checksum = fmu_checksum(bytes, size - 8);
+    memset(bytes + size - 8, 0, 8);
+    for (size_t k = 0; k < 4; k++) bytes[size - 8 + k] = (uint8_t)(checksum >> (8 * k));
+}
+
 /* The log names the file that was looked for. */
 static void uris_are_decoded_and_paths_are_not(void) {
     static const char *const cases[][2] = {{"file:///no%2fwhere%4A%4a", "/no/whereJJ/start.bin"},
@@ -90,6 +97,8 @@ static void uris_are_decoded_and_paths_are_not(void) {
                                            {"file:///no%c3%9F", "/no\xC3\x9F/start.bin"},
                                            {"file:///C:/no", "C:/no/start.bin"},
                                            {"file:C:/no", "C:/no/start.bin"},
+                                           {"file:///no%09where", "/no\twhere/start.bin"},
+                                           {"files/nowhere", "files/nowhere/start.bin"},
                                            {"file:/", "/start.bin"},
                                            {"/no%20where", "/no%20where/start.bin"},
                                            {"/nowhere\\", "/nowhere/start.bin"},
@@ -120,6 +129,22 @@ static void a_path_that_is_too_long_is_refused(void) {
         ASSERT_LOGGED("holds no start values for it");
         path[length] = 'a';
     }
+}
+
+/* Such a path is not cut off: where its beginning is the name of a file, that file is another one. */
+static void of_a_path_that_is_too_long_no_beginning_is_opened(void) {
+    static char path[5000];
+    const fmu_start_value pairs[1] = {{ref("mass_kg", 0), 12.5}};
+    const size_t size = make(2, 1, TOKEN, pairs, 1, 1), length = 4085 - strlen("/start.bin");
+    memset(path, '/', length);
+    memcpy(path + length - strlen(folder), folder, strlen(folder));
+    path[length] = 0;
+    fmi2Component c = with(size, path);
+    TEST_ASSERT_NOT_NULL(c);
+    fmi2FreeInstance(c);
+    strcpy(path + length, "/start.bin/and more");
+    TEST_ASSERT_NULL(at(path));
+    ASSERT_LOGGED("holds no start values for it");
 }
 
 /* The longest path that systems open. */
@@ -187,15 +212,16 @@ static void the_file_says_whether_the_number_of_wheels_is_fixed(void) {
 
 static void a_file_that_does_not_fit_is_refused(void) {
     const fmu_start_value good[1] = {{ref("mass_kg", 0), 2}};
-    const fmu_start_value bad[6] = {{0x7FFFFFFF, 1},          {ref("mass_kg", 0), -1},
+    const fmu_start_value bad[7] = {{0x7FFFFFFF, 1},          {ref("mass_kg", 0), -1},
                                     {ref("x_m", 0), 1},       {ref("wheel_count", 0), 17},
-                                    {ref("voltage_V", 0), 1}, {ref("support_count", 0), -1}};
+                                    {ref("voltage_V", 0), 1}, {ref("support_count", 0), -1},
+                                    {0x80000000U, 1}};                   /* the private ones are a scene's on a bus */
     TEST_ASSERT_NULL(with(make(1, 0, TOKEN, good, 1, 1), folder));       /* another version */
     TEST_ASSERT_NULL(with(make(2, 0, "{another}", good, 1, 1), folder)); /* of another FMU */
     TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 2), folder));       /* a value is missing */
     TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 1) - 1, folder));   /* cut off */
     TEST_ASSERT_NULL(with(8, folder));
-    for (int k = 0; k < 6; k++) TEST_ASSERT_NULL(with(make(2, 0, TOKEN, &bad[k], 1, 1), folder));
+    for (int k = 0; k < 7; k++) TEST_ASSERT_NULL(with(make(2, 0, TOKEN, &bad[k], 1, 1), folder));
     const size_t size = make(2, 0, TOKEN, good, 1, 1);
     bytes[40] ^= 1;
     TEST_ASSERT_NULL(with(size, folder));
@@ -208,6 +234,43 @@ static void a_file_that_does_not_fit_is_refused(void) {
     TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 1), "file://host"));
 }
 
+/* 48 bytes are a file without a value, 65,536 one of 4,093; both are read, and none that is longer. */
+static void a_file_has_48_bytes_to_64_KiB(void) {
+    static fmu_start_value many[4093];
+    fmi2Component c = with(make(2, 0, TOKEN, NULL, 0, 0), folder);
+    TEST_ASSERT_NOT_NULL(c);
+    TEST_ASSERT_TRUE(mass_of(c) == 0); /* of the build's values it has none */
+    fmi2FreeInstance(c);
+    for (int k = 0; k < 4093; k++) many[k] = (fmu_start_value){ref("mass_kg", 0), k};
+    const size_t size = make(2, 0, TOKEN, many, 4093, 4093);
+    TEST_ASSERT_EQUAL_size_t(65536, size);
+    c = with(size, folder);
+    TEST_ASSERT_NOT_NULL(c);
+    TEST_ASSERT_TRUE(mass_of(c) == 4092);
+    fmi2FreeInstance(c);
+    seal(size + 1);
+    TEST_ASSERT_NULL(with(size + 1, folder));
+}
+
+/* Where the checksum begins within the count, its first byte is the count's last; the flag makes it fit. */
+static void a_count_that_is_cut_off_counts_nothing(void) {
+    const uint64_t most = 0x0FFFFFFFFFFFFFFFU;
+    for (uint64_t flag = 1; flag < 10000; flag++) {
+        make(2, flag, TOKEN, NULL, 0, most);
+        seal(47);
+        if (bytes[39] == most >> 56) break;
+    }
+    TEST_ASSERT_EQUAL_HEX8(most >> 56, bytes[39]);
+    TEST_ASSERT_NULL(with(47, folder));
+}
+
+static void a_value_that_is_cut_off_is_none(void) {
+    const fmu_start_value good[1] = {{ref("mass_kg", 0), 2}};
+    const size_t size = make(2, 0, TOKEN, good, 1, 1) - 1;
+    seal(size);
+    TEST_ASSERT_NULL(with(size, folder));
+}
+
 static void a_hash_is_that_of_fnv_1a(void) {
     TEST_ASSERT_TRUE(fmu_token_hash("") == 0xCBF29CE484222325U);
     TEST_ASSERT_TRUE(fmu_token_hash("a") == 0xAF63DC4C8601EC8CU);
@@ -218,10 +281,14 @@ int main(void) {
     RUN_TEST(values_come_from_the_file_by_a_path_or_a_uri);
     RUN_TEST(uris_are_decoded_and_paths_are_not);
     RUN_TEST(a_path_that_is_too_long_is_refused);
+    RUN_TEST(of_a_path_that_is_too_long_no_beginning_is_opened);
     RUN_TEST(a_path_of_4095_letters_is_opened);
     RUN_TEST(a_vehicle_without_wheels_is_a_vehicle);
     RUN_TEST(the_file_says_whether_the_number_of_wheels_is_fixed);
     RUN_TEST(a_file_that_does_not_fit_is_refused);
+    RUN_TEST(a_file_has_48_bytes_to_64_KiB);
+    RUN_TEST(a_count_that_is_cut_off_counts_nothing);
+    RUN_TEST(a_value_that_is_cut_off_is_none);
     RUN_TEST(a_hash_is_that_of_fnv_1a);
     return UNITY_END();
 }

@@ -58,7 +58,9 @@ static size_t write(void) {
     OK(fmi2GetFMUstate(c, &kept));
     OK(fmi2SerializedFMUstateSize(c, kept, &size));
     TEST_ASSERT_TRUE(size > 100 && size < sizeof bytes);
-    ASSERT_REFUSED(fmi2SerializeFMUstate(c, kept, bytes, size - 1), "bytes given for a state of");
+    char told[100];
+    snprintf(told, sizeof told, "SerializeFMUState: %zu bytes given for a state of %zu", size - 1, size);
+    ASSERT_REFUSED(fmi2SerializeFMUstate(c, kept, bytes, size - 1), told);
     ASSERT_REFUSED(fmi2SerializeFMUstate(c, kept, NULL, size), "the memory for the bytes is missing");
     ASSERT_REFUSED(fmi2SerializedFMUstateSize(c, kept, NULL), "the pointer to the size is missing");
     OK(fmi2SerializeFMUstate(c, kept, bytes, size));
@@ -83,6 +85,18 @@ static void bytes_are_read_by_another_instance(void) {
     fmi2FreeFMUstate(c, &read);
 }
 
+/* As the bytes of a new instance, without what the run before had set. */
+static void after_a_reset_the_state_is_that_of_a_new_instance(void) {
+    static fmi2Byte fresh[sizeof bytes];
+    const size_t size = write();
+    memcpy(fresh, bytes, size);
+    begin();
+    run(20, 0);
+    OK(fmi2Reset(c));
+    TEST_ASSERT_EQUAL_size_t(size, write());
+    TEST_ASSERT_EQUAL_MEMORY(fresh, bytes, size);
+}
+
 static void damaged_bytes_are_refused_whichever_they_are(void) {
     fmi2FMUstate read = NULL;
     begin();
@@ -94,6 +108,8 @@ static void damaged_bytes_are_refused_whichever_they_are(void) {
     }
     ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size - 8, &read), "are damaged or cut off");
     ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, 20, &read), "these 20 bytes are no state of Laconic");
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, 39, &read), "these 39 bytes are no state of Laconic");
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, 40, &read), "the 40 bytes are damaged or cut off");
     ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, NULL, size, &read), "are missing (NULL)");
     ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, NULL), "are missing (NULL)");
     bytes[8]++; /* the version */
@@ -230,6 +246,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_kept_state_is_taken_up_again_bit_for_bit);
     RUN_TEST(bytes_are_read_by_another_instance);
+    RUN_TEST(after_a_reset_the_state_is_that_of_a_new_instance);
     RUN_TEST(damaged_bytes_are_refused_whichever_they_are);
     RUN_TEST(an_impossible_state_is_refused_though_its_checksum_is_right);
     RUN_TEST(a_heading_whose_rest_is_no_rest_is_refused);

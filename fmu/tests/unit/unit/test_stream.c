@@ -16,6 +16,7 @@ static void numbers_are_little_endian_and_come_back(void) {
     bool flag = true;
     double real = -1.5;
     fmu_stream *const both[2] = {&to, &counts};
+    memset(bytes, 0x55, sizeof bytes);
     for (int k = 0; k < 2; k++) {
         fmu_stream_u64(both[k], &whole);
         fmu_stream_i32(both[k], &small, -10, 10);
@@ -25,6 +26,7 @@ static void numbers_are_little_endian_and_come_back(void) {
         TEST_ASSERT_FALSE(both[k]->failed);
     }
     for (int k = 0; k < 8; k++) TEST_ASSERT_EQUAL_HEX8(8 - k, bytes[k]);
+    TEST_ASSERT_EQUAL_HEX8(0x55, bytes[32]); /* what is behind them stays */
     TEST_ASSERT_EQUAL_HEX8(0xFB, bytes[8]);
     TEST_ASSERT_EQUAL_HEX8(0xFF, bytes[15]);
     whole = 0, small = 0, flag = false, real = 0;
@@ -63,6 +65,17 @@ static void a_number_out_of_its_range_fails_and_keeps_the_one_before(void) {
     }
 }
 
+static void a_flag_is_0_or_1(void) {
+    for (uint8_t number = 0; number < 4; number++) {
+        fmu_stream from = {.from = bytes, .size = 8};
+        bool flag = number != 1;
+        bytes[0] = number;
+        fmu_stream_bool(&from, &flag);
+        TEST_ASSERT_EQUAL(number > 1, from.failed);
+        TEST_ASSERT_EQUAL(number != 0, flag);
+    }
+}
+
 static void the_checksum_is_the_usual_crc_32(void) {
     for (unsigned byte = 0; byte < 256; byte++) { /* bit by bit */
         const uint8_t one = (uint8_t)byte;
@@ -79,6 +92,7 @@ int main(void) {
     RUN_TEST(numbers_are_little_endian_and_come_back);
     RUN_TEST(bytes_that_are_too_few_fail_and_are_not_touched);
     RUN_TEST(a_number_out_of_its_range_fails_and_keeps_the_one_before);
+    RUN_TEST(a_flag_is_0_or_1);
     RUN_TEST(the_checksum_is_the_usual_crc_32);
     return UNITY_END();
 }

@@ -56,6 +56,13 @@ static void a_list_for_the_fast_path_is_kept_with_all_of_its_values(void) {
         TEST_ASSERT_EQUAL(count, it->read.count);
         TEST_ASSERT_EQUAL(4 * count, it->read.values);
     }
+    fmi3ValueReference longest[FMU_LIST_LENGTH + 1];
+    for (uint32_t k = 0; k < FMU_LIST_LENGTH + 1; k++) longest[k] = list[0] << FMU_ELEMENT_SHIFT | 1;
+    OK(fmi3SetFloat64(i, longest, FMU_LIST_LENGTH, given, FMU_LIST_LENGTH));
+    OK(fmi3GetFloat64(i, longest, FMU_LIST_LENGTH, found, FMU_LIST_LENGTH));
+    TEST_ASSERT_TRUE(it->written.count == FMU_LIST_LENGTH && it->read.count == FMU_LIST_LENGTH);
+    ASSERT_REFUSED(fmi3SetFloat64(i, longest, FMU_LIST_LENGTH + 1, given, 0), "but only 0 were left");
+    ASSERT_REFUSED(fmi3GetFloat64(i, longest, FMU_LIST_LENGTH + 1, found, 0), "but only 0 were left");
     list[0] = ref("energy_J", 0);
     OK(fmi3GetFloat64(i, list, 1, found, 1));
     TEST_ASSERT_EQUAL_UINT32(FMU_GROUP_ENERGY, it->read.groups); /* no more is computed than is read */
@@ -109,12 +116,132 @@ static void the_number_of_values_is_checked_each_time(void) {
     fmi3FreeInstance(i);
 }
 
+/* One value that is not finite behind one that is, in a list that the fast path has kept. */
+static void a_value_that_is_not_finite_is_refused_wherever_it_stands(void) {
+    const fmi2ValueReference list[2] = {ref("voltage_V", 1), ref("voltage_V", 2)};
+    double volts[2] = {1, 2};
+    initialise();
+    OK(fmi2SetReal(c, list, 2, volts));
+    volts[0] = 5, volts[1] = NOT_A_NUMBER;
+    ASSERT_REFUSED(fmi2SetReal(c, list, 2, volts), "voltage_V[2]: nan is not a finite number");
+    OK(fmi2GetReal(c, list, 2, volts));
+    TEST_ASSERT_TRUE(volts[0] == 1 && volts[1] == 2);
+    const fmi2ValueReference outputs[2] = {ref("wheel_torque_Nm", 1), ref("wheel_torque_Nm", 2)};
+    double torques[2];
+    OK(fmi2GetReal(c, outputs, 2, torques));
+    set("motor_gain_Nm_per_V", 0, 10);
+    set("voltage_V", 2, 1e308);
+    torques[0] = torques[1] = 7;
+    ASSERT_REFUSED(fmi2GetReal(c, outputs, 2, torques), "wheel_torque_Nm[2] leaves the range of double precision");
+    TEST_ASSERT_TRUE(torques[0] == 7 && torques[1] == 7);
+}
+
+static void an_element_of_an_array_is_named_where_it_is_refused(void) {
+    const fmi3ValueReference voltage = ref("voltage_V", 0), torque = ref("wheel_torque_Nm", 0),
+                             gain = ref("motor_gain_Nm_per_V", 0);
+    double volts[4] = {1, 2, NOT_A_NUMBER, 4}, torques[4] = {7, 7, 7, 7}, strong = 10;
+    fmi3Instance i = make_3(false);
+    OK(fmi3SetFloat64(i, &gain, 1, &strong, 1));
+    OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(i));
+    ASSERT_REFUSED(fmi3SetFloat64(i, &voltage, 1, volts, 4), "voltage_V[3]: nan is not a finite number");
+    volts[2] = 1e308;
+    OK(fmi3SetFloat64(i, &voltage, 1, volts, 4));
+    ASSERT_REFUSED(fmi3GetFloat64(i, &torque, 1, torques, 4), "wheel_torque_Nm[3] leaves the range");
+    TEST_ASSERT_TRUE(torques[0] == 7 && torques[3] == 7);
+    fmi3FreeInstance(i);
+}
+
+/* By the path with all checks, since the list is long: neighbours that cannot be read do not matter. */
+static void a_value_is_read_though_its_neighbour_cannot_be(void) {
+    fmi2ValueReference list[MANY];
+    double torques[MANY];
+    set("motor_gain_Nm_per_V", 0, 10);
+    initialise();
+    set("voltage_V", 1, 2);
+    set("voltage_V", 2, 1e308);
+    for (uint32_t k = 0; k < MANY; k++) list[k] = ref("wheel_torque_Nm", 1);
+    OK(fmi2GetReal(c, list, MANY, torques));
+    TEST_ASSERT_TRUE(torques[0] != 0 && torques[MANY - 1] == torques[0]);
+}
+
+/* A long list of inputs takes the path with all checks; outputs follow it as they follow a short one. */
+static void outputs_follow_inputs_that_are_set_by_either_path(void) {
+    fmi2ValueReference list[MANY];
+    double volts[MANY];
+    initialise();
+    set("voltage_V", 1, 1);
+    const double torque = get("wheel_torque_Nm", 1);
+    for (uint32_t k = 0; k < MANY; k++) list[k] = ref("voltage_V", 1), volts[k] = 3;
+    OK(fmi2SetReal(c, list, MANY, volts));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3 * torque, get("wheel_torque_Nm", 1));
+    TEST_ASSERT_TRUE(torque > 0);
+    set("voltage_V", 1, 1);
+    TEST_ASSERT_TRUE(get("wheel_torque_Nm", 1) == torque);
+}
+
+/* The memory of lists ends with them; sanitizers see what would be read behind. */
+static void no_more_is_read_than_the_list_has(void) {
+    fmi2ValueReference *const list = malloc(2 * sizeof *list);
+    double *const values = malloc(2 * sizeof *values);
+    TEST_ASSERT_TRUE(list != NULL && values != NULL);
+    list[0] = ref("voltage_V", 1), list[1] = ref("voltage_V", 2);
+    values[0] = 1, values[1] = 2;
+    initialise();
+    for (int again = 0; again < 2; again++) {
+        OK(fmi2SetReal(c, list, 2, values));
+        OK(fmi2GetReal(c, list, 2, values));
+    }
+    TEST_ASSERT_TRUE(values[0] == 1 && values[1] == 2);
+    free(values);
+    free(list);
+}
+
+/* As many references and as many values, but one is another. */
+static void a_list_is_another_one_if_one_reference_is(void) {
+    fmi2ValueReference list[3] = {ref("voltage_V", 1), ref("voltage_V", 2), ref("voltage_V", 3)};
+    double volts[3] = {1, 2, 3};
+    initialise();
+    OK(fmi2SetReal(c, list, 3, volts));
+    OK(fmi2GetReal(c, list, 3, volts));
+    list[2] = ref("voltage_V", 4);
+    volts[2] = 4;
+    OK(fmi2SetReal(c, list, 3, volts));
+    TEST_ASSERT_TRUE(get("voltage_V", 3) == 3 && get("voltage_V", 4) == 4);
+    list[1] = ref("voltage_V", 3);
+    OK(fmi2GetReal(c, list, 3, volts));
+    TEST_ASSERT_TRUE(volts[0] == 1 && volts[1] == 3 && volts[2] == 4);
+}
+
+/* A list that was checked for four wheels is not that of six; nor is one that was read before the reset. */
+static void a_list_is_checked_anew_in_each_mode(void) {
+    const fmi3ValueReference voltage = ref("voltage_V", 0), speed = ref("wheel_speed_rad_per_s", 0),
+                             wheels = ref("wheel_count", 0);
+    const fmi3UInt64 six = 6;
+    double values[6] = {1, 2, 3, 4, 5, 6};
+    fmi3Instance i = make_3(false);
+    OK(fmi3SetFloat64(i, &voltage, 1, values, 4));
+    OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
+    OK(fmi3GetFloat64(i, &speed, 1, values, 4));
+    OK(fmi3Reset(i));
+    ASSERT_REFUSED(fmi3GetFloat64(i, &speed, 1, values, 4), "it has no value before initialization");
+    OK(fmi3SetFloat64(i, &voltage, 1, values, 4));
+    OK(fmi3EnterConfigurationMode(i));
+    OK(fmi3SetUInt64(i, &wheels, 1, &six, 1));
+    OK(fmi3ExitConfigurationMode(i));
+    ASSERT_REFUSED(fmi3SetFloat64(i, &voltage, 1, values, 4), "voltage_V has 6 values, but only 4 were left");
+    OK(fmi3SetFloat64(i, &voltage, 1, values, 6));
+    fmi3FreeInstance(i);
+}
+
 static void references_that_are_none_are_refused_whatever_their_form(void) {
     const uint32_t voltage = ref("voltage_V", 0) << FMU_ELEMENT_SHIFT;
-    const fmi2ValueReference none[5] = {0x7FFFFFFF, voltage, voltage | 5, fmu_variable_count, voltage | 1023};
+    const fmi2ValueReference none[] = {0x7FFFFFFF,     voltage,
+                                       voltage | 5,    fmu_variable_count,
+                                       voltage | 1023, ref("body_moment_Nm", 0) << FMU_ELEMENT_SHIFT};
     double value = 7;
     initialise();
-    for (int k = 0; k < 5; k++) {
+    for (size_t k = 0; k < sizeof none / sizeof none[0]; k++) {
         ASSERT_REFUSED(fmi2GetReal(c, &none[k], 1, &value), "there is no variable with the value reference");
         ASSERT_REFUSED(fmi2SetReal(c, &none[k], 1, &value), "there is no variable with the value reference");
     }
@@ -140,6 +267,7 @@ static void a_list_of_inputs_and_parameters_is_set_as_a_whole_or_not_at_all(void
     TEST_ASSERT_TRUE(get("voltage_V", 1) == 3);
     values[0] = -NOT_A_NUMBER;
     ASSERT_REFUSED(fmi2SetReal(c, list, 1, values), "voltage_V[1]: nan is not"); /* NaN has no sign */
+    TEST_ASSERT_EQUAL_STRING("logStatusError: voltage_V[1]: nan is not a finite number", logged);
 }
 
 static void a_flag_is_yes_or_no(void) {
@@ -242,6 +370,13 @@ int main(void) {
     RUN_TEST(a_list_for_the_fast_path_is_kept_with_all_of_its_values);
     RUN_TEST(a_list_that_cannot_be_set_or_read_is_refused_whatever_its_number_of_values);
     RUN_TEST(the_number_of_values_is_checked_each_time);
+    RUN_TEST(a_value_that_is_not_finite_is_refused_wherever_it_stands);
+    RUN_TEST(an_element_of_an_array_is_named_where_it_is_refused);
+    RUN_TEST(a_value_is_read_though_its_neighbour_cannot_be);
+    RUN_TEST(outputs_follow_inputs_that_are_set_by_either_path);
+    RUN_TEST(no_more_is_read_than_the_list_has);
+    RUN_TEST(a_list_is_another_one_if_one_reference_is);
+    RUN_TEST(a_list_is_checked_anew_in_each_mode);
     RUN_TEST(references_that_are_none_are_refused_whatever_their_form);
     RUN_TEST(a_list_of_inputs_and_parameters_is_set_as_a_whole_or_not_at_all);
     RUN_TEST(a_flag_is_yes_or_no);
