@@ -86,13 +86,14 @@ static void equal_steps_are_checked_each_time(void) {
     ASSERT_REFUSED(step(0, 0), "it must be more than 0");
     OK(step(0, 0.5));
     OK(step(0.5, 0.5));
-    ASSERT_REFUSED(step(1, 0.5), "goes beyond the stop time 1 s");
+    ASSERT_REFUSED(step(1, 0.5), "the step from 1 s to 1.5 s goes beyond the stop time 1 s");
     make(fmi2CoSimulation);
     begin(0, false, 0);
     ASSERT_REFUSED(step(0, 0), "it must be more than 0");
     OK(step(0, 1));
     OK(step(1, 1));
     ASSERT_REFUSED(step(-2, 1), "the step starts at -2 s, but the model is at 2 s");
+    ASSERT_REFUSED(step(1, 2), "the step starts at 1 s, but the model is at 2 s");
     make(fmi2CoSimulation);
     set("step_s", 0, 0.01);
     begin(0, false, 0);

@@ -73,6 +73,9 @@ static void the_log_goes_to_the_importer_s_environment_in_lines_of_511_letters(v
     told_to = 0;
     TEST_ASSERT_EQUAL_INT(fmi2Error, fmi2Terminate(c));
     TEST_ASSERT_EQUAL_INT(1, told_to);
+    TEST_ASSERT_NULL(fmi2Instantiate("one", (fmi2Type)7, fmu_token_2, NULL, &callbacks, 0, 0));
+    TEST_ASSERT_EQUAL_INT(2, told_to);
+    ASSERT_LOGGED("logStatusError: Instantiate: there is no such fmuType");
 }
 
 /* NaN has no sign: without it the line, which was cut, is a letter shorter. */
@@ -83,6 +86,17 @@ static void a_line_that_was_cut_is_told_to_its_end(void) {
     TEST_ASSERT_NULL(make_2(fmi2CoSimulation, token));
     ASSERT_LOGGED("the token { nanxxx");
     TEST_ASSERT_EQUAL_size_t(strlen("logStatusError: ") + 510, strlen(logged));
+}
+
+/* As long as a line may be, each doubled; the next line is as short as it is. */
+static void all_percent_signs_of_a_line_are_doubled(void) {
+    static char token[700];
+    memset(token, '%', sizeof token - 1);
+    TEST_ASSERT_NULL(make_2(fmi2CoSimulation, token));
+    TEST_ASSERT_EQUAL_size_t(sizeof logged - 1, strlen(logged)); /* which is what this test's log takes of it */
+    TEST_ASSERT_EQUAL_size_t(strlen(logged) - strlen("logStatusError: the token "), strspn(strchr(logged, '%'), "%"));
+    ASSERT_REFUSED(fmi2Terminate(c), "");
+    TEST_ASSERT_EQUAL_STRING("logStatusError: Terminate is not allowed in instantiated", logged);
 }
 
 /* Which the instance keeps: the importer's memory may end with the name, and with the call. */
@@ -346,6 +360,7 @@ int main(void) {
     RUN_TEST(nothing_is_made_without_name_token_kind_or_callbacks);
     RUN_TEST(the_log_goes_to_the_importer_s_environment_in_lines_of_511_letters);
     RUN_TEST(a_line_that_was_cut_is_told_to_its_end);
+    RUN_TEST(all_percent_signs_of_a_line_are_doubled);
     RUN_TEST(the_log_has_the_name_of_the_instance);
     RUN_TEST(a_step_has_the_bits_of_the_core);
     RUN_TEST(every_type_has_its_functions_and_refuses_the_others);

@@ -57,12 +57,13 @@ static void a_list_for_the_fast_path_is_kept_with_all_of_its_values(void) {
         TEST_ASSERT_EQUAL(4 * count, it->read.values);
     }
     fmi3ValueReference longest[FMU_LIST_LENGTH + 1];
+    double many[FMU_LIST_LENGTH] = {0};
     for (uint32_t k = 0; k < FMU_LIST_LENGTH + 1; k++) longest[k] = list[0] << FMU_ELEMENT_SHIFT | 1;
-    OK(fmi3SetFloat64(i, longest, FMU_LIST_LENGTH, given, FMU_LIST_LENGTH));
-    OK(fmi3GetFloat64(i, longest, FMU_LIST_LENGTH, found, FMU_LIST_LENGTH));
+    OK(fmi3SetFloat64(i, longest, FMU_LIST_LENGTH, many, FMU_LIST_LENGTH));
+    OK(fmi3GetFloat64(i, longest, FMU_LIST_LENGTH, many, FMU_LIST_LENGTH));
     TEST_ASSERT_TRUE(it->written.count == FMU_LIST_LENGTH && it->read.count == FMU_LIST_LENGTH);
-    ASSERT_REFUSED(fmi3SetFloat64(i, longest, FMU_LIST_LENGTH + 1, given, 0), "but only 0 were left");
-    ASSERT_REFUSED(fmi3GetFloat64(i, longest, FMU_LIST_LENGTH + 1, found, 0), "but only 0 were left");
+    ASSERT_REFUSED(fmi3SetFloat64(i, longest, FMU_LIST_LENGTH + 1, many, 0), "but only 0 were left");
+    ASSERT_REFUSED(fmi3GetFloat64(i, longest, FMU_LIST_LENGTH + 1, many, 0), "but only 0 were left");
     list[0] = ref("energy_J", 0);
     OK(fmi3GetFloat64(i, list, 1, found, 1));
     TEST_ASSERT_EQUAL_UINT32(FMU_GROUP_ENERGY, it->read.groups); /* no more is computed than is read */
