@@ -25,10 +25,28 @@ static void it_has_no_structural_parameters(void) {
     TEST_ASSERT_EQUAL(FMU_INSTANTIATED, instance()->mode);
 }
 
+/* The command of a period is due behind it, that of the next one not yet. */
+static void a_step_tells_whether_its_terminal_has_an_event(void) {
+    bool event = false, terminate = true, early = true;
+    double end_s = 7;
+    OK(begin_from(0));
+    take("CAN"); /* its bit rate */
+    const double period_s = instance()->model.period_s;
+    OK(fmi3EnterStepMode(c));
+    OK(fmi3DoStep(c, 0, period_s, true, &event, &terminate, &early, &end_s));
+    TEST_ASSERT_TRUE(event && !terminate && !early && end_s == period_s);
+    OK(fmi3EnterEventMode(c));
+    take("CAN");
+    OK(fmi3EnterStepMode(c));
+    OK(fmi3DoStep(c, period_s, 0.5 * period_s, true, &event, NULL, NULL, NULL));
+    TEST_ASSERT_FALSE(event);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(its_clocks_need_event_mode);
     RUN_TEST(it_is_for_co_simulation_alone);
     RUN_TEST(it_has_no_structural_parameters);
+    RUN_TEST(a_step_tells_whether_its_terminal_has_an_event);
     return UNITY_END();
 }

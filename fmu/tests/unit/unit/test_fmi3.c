@@ -194,6 +194,23 @@ static void in_event_mode_motors_are_tuned_and_the_change_is_told(void) {
     TEST_ASSERT_TRUE(get("motor_gain_Nm_per_V", 0) == 0.2);
 }
 
+/* Every answer is written, whatever stood there. */
+static void without_an_event_a_run_goes_on(void) {
+    fmi3Boolean need = true, terminate = true, nominals = true, values = true, next = true, event = true, early = true;
+    double next_s = 7, end_s = 7;
+    fmi3FreeInstance(c);
+    c = make_3(true);
+    begin();
+    OK(fmi3UpdateDiscreteStates(c, &need, &terminate, &nominals, &values, &next, &next_s));
+    TEST_ASSERT_FALSE(need || terminate || nominals || values || next);
+    TEST_ASSERT_TRUE(next_s == 0);
+    OK(fmi3EnterStepMode(c));
+    terminate = true;
+    OK(fmi3DoStep(c, 0, 0.1, true, &event, &terminate, &early, &end_s));
+    TEST_ASSERT_FALSE(event || terminate || early);
+    TEST_ASSERT_TRUE(end_s == 0.1);
+}
+
 static int told_to;
 static void log_to(fmi3InstanceEnvironment e, fmi3Status status, fmi3String category, fmi3String text) {
     (void)category, (void)text;
@@ -313,6 +330,7 @@ int main(void) {
     RUN_TEST(an_importer_may_look_between_internal_steps_and_return);
     RUN_TEST(variables_without_intermediate_values_cannot_be_required);
     RUN_TEST(in_event_mode_motors_are_tuned_and_the_change_is_told);
+    RUN_TEST(without_an_event_a_run_goes_on);
     RUN_TEST(the_log_goes_to_the_importer_s_environment);
     RUN_TEST(in_event_mode_the_number_of_wheels_stays);
     RUN_TEST(the_time_is_not_set_as_a_variable);

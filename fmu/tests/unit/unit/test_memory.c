@@ -84,7 +84,13 @@ static void what_was_allocated_is_freed(void) {
         fmi3InstantiateCoSimulation("a", fmu_token_3, NULL, false, true, false, false, NULL, 1, NULL, log_3, NULL));
     TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
     fmi3Instance third = make_3(false);
+    fmi3FMUState of_third = NULL;
     TEST_ASSERT_EQUAL_INT(before + 2, short_memory_blocks); /* itself and its name */
+    OK(fmi3GetFMUState(third, &of_third));
+    TEST_ASSERT_EQUAL_INT(before + 3, short_memory_blocks);
+    OK(fmi3FreeFMUState(third, &of_third));
+    TEST_ASSERT_NULL(of_third);
+    TEST_ASSERT_EQUAL_INT(before + 2, short_memory_blocks);
     fmi3FreeInstance(third);
     fmi2FreeInstance(make_2(fmi2CoSimulation, fmu_token_2));
     TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
