@@ -310,11 +310,17 @@ static void who_does_not_ask_to_return_does_not(void) {
     fmi3Instance alone = make_3(false); /* whose importer cannot ask */
     OK(fmi3EnterInitializationMode(alone, false, 0, 0, false, 0));
     OK(fmi3ExitInitializationMode(alone));
+    asks_at_2 = true;
+    OK(step_by_callback(true, &returned, &end_s));
     for (int k = 0; k < 3; k++) {
-        returned = true;
-        OK(fmi3DoStep(alone, 0.5 * k, 0.5, true, NULL, NULL, &returned, &end_s));
-        TEST_ASSERT_TRUE(!returned && end_s == 0.5 * k + 0.5);
+        bool of_third;
+        seen = 0;
+        const fmi3Status first = fmi3DoStep(third, 0.02 * k + 0.02, 0.05, true, NULL, NULL, &of_third, NULL);
+        const fmi3Status second = fmi3DoStep(alone, 0.5 * k, 0.5, true, NULL, NULL, &returned, &end_s);
+        TEST_ASSERT_TRUE(first == fmi3OK && of_third); /* just before, somebody else's */
+        TEST_ASSERT_TRUE(second == fmi3OK && !returned && end_s == 0.5 * k + 0.5);
     }
+    asks_at_2 = false;
     fmi3FreeInstance(alone);
 }
 
