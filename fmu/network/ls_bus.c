@@ -113,6 +113,7 @@ static bool read_frame(ls_bus_operation *to, const uint8_t *at) {
                                  .fd = fd,
                                  .bit_rate_switch = fd && at[13] != 0};
     to->frame = frame;
+    to->error_passive = fd && at[14] != 0;
     to->id = id;
     memcpy(to->frame.data, at + header, length);
     return true;

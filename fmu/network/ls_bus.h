@@ -63,6 +63,7 @@ typedef struct ls_bus_operation {
     const uint8_t *bytes; /* of the whole operation */
     size_t size;
     laconic_frame frame;
+    bool error_passive; /* its sender is, as a frame of CAN FD says (ESI) */
     uint32_t id;
     uint8_t error, flag;
     bool is_sender;

@@ -58,7 +58,8 @@ static void take(fmu_instance *instance, unsigned from, ls_bus_reading reading, 
     switch (operation->code) {
     case LS_BUS_CAN_TRANSMIT:
     case LS_BUS_CAN_FD_TRANSMIT:
-        if (node->status == LS_BUS_BUS_OFF || ls_bus_put_frame(&node->queue, &operation->frame, false)) return;
+        if (node->status == LS_BUS_BUS_OFF) return;
+        if (ls_bus_put_frame(&node->queue, &operation->frame, operation->error_passive)) return;
         if (self->dropped == 0)
             fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING, "Node%u sends more than the bus can carry: frames are lost",
                     from + 1);
@@ -160,6 +161,7 @@ static void begin_frame(fmu_instance *instance, double at_s) {
     self->is_busy = true;
     self->sender = best;
     self->frame = operation.frame;
+    self->error_passive = operation.error_passive;
     self->free_s = at_s + lasts_s;
     self->busy_s += lasts_s;
     ls_bus_drop(&self->node[best].queue, operation.size);
@@ -184,7 +186,7 @@ static void deliver_frame(fmu_model *self) {
     count(&self->carried);
     if (is_off) return; /* nobody acknowledges it */
     ls_bus_put_id(&self->port[self->sender].tx, LS_BUS_CONFIRM, self->frame.id);
-    if (!ls_bus_put_frame(&self->port[receiver].tx, &self->frame, false)) count(&self->dropped);
+    if (!ls_bus_put_frame(&self->port[receiver].tx, &self->frame, self->error_passive)) count(&self->dropped);
 }
 
 static void end_frame(fmu_model *self) {

@@ -36,6 +36,7 @@ typedef struct fmu_model {
     bool rates_differ; /* the log has told it: nothing is carried */
     uint32_t sender;
     laconic_frame frame; /* on the bus */
+    bool error_passive;  /* its sender is, as it has said in the frame */
     double free_s;       /* when it ends */
     double busy_s;       /* sum of all frames' times */
     int32_t carried, contended, failed, dropped;

@@ -1,27 +1,9 @@
 /* Tests of bus/model.c: frames take their time and go in the order of their identifiers, errors and lost
  * arbitration are told, and what cannot be carried is counted. */
-#include "frame_time.h"
-#include "model_interface.h"
-#include "network_bench.h"
+#include "bus_bench.h"
 
 void setUp(void) { begin_test(); }
 void tearDown(void) { end_test(); }
-
-static void put(uint32_t id, bool extended, bool remote) {
-    const laconic_frame frame = {
-        .id = id, .length = remote ? 0 : 1, .extended = extended, .remote = remote, .data = {9}};
-    TEST_ASSERT_TRUE(ls_bus_put_frame(&out, &frame, false));
-}
-
-static void send(const char *node) {
-    give(node, &out);
-    out.size = 0;
-}
-
-/* Of a frame with one byte at 1 Mbit/s. */
-#define ONE_S 55e-6
-
-static void begin(void) { OK(begin_from(0)); }
 
 static void a_frame_arrives_after_its_time_and_is_confirmed(void) {
     begin();
@@ -90,6 +72,8 @@ static void the_lower_number_wins_bit_by_bit(void) {
     wins(0x10, false, false, 0x10U << 18, true, false);
     wins(0x0FU << 18, true, false, 0x10, false, false);
     wins(0x10U << 18 | 1, true, false, 0x10U << 18 | 2, true, false);
+    wins(0x10U << 18 | 2, true, false, 0x10U << 18 | 3, true, false);
+    wins(0x10U << 18 | 0x1FFFF, true, false, 0x10U << 18 | 0x20000, true, false);
     wins(0x10U << 18 | 1, true, false, 0x10U << 18 | 1, true, true);
     wins(0x10U << 18 | 0x3FFFF, true, true, 0x11U << 18, true, false);
 }

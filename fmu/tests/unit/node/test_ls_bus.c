@@ -48,6 +48,7 @@ static void a_classic_frame_has_its_bytes(void) {
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_first());
     TEST_ASSERT_EQUAL_MEMORY(&plain, &operation.frame, sizeof plain);
     TEST_ASSERT_TRUE(operation.id == 0x123 && operation.size == 18 && operation.bytes == buffer.bytes);
+    TEST_ASSERT_FALSE(operation.error_passive); /* a classic frame does not say it */
     const laconic_frame remote = {.id = 0x1ABCDEF0, .extended = true, .remote = true};
     setUp();
     TEST_ASSERT_TRUE(ls_bus_put_frame(&buffer, &remote, false));
@@ -62,9 +63,11 @@ static void a_frame_of_can_fd_has_its_bytes(void) {
     BYTES(0x11, 0, 0, 0, 18, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 1, 0, 7);
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_first());
     TEST_ASSERT_EQUAL_MEMORY(&frame, &operation.frame, sizeof frame);
+    TEST_ASSERT_TRUE(operation.error_passive);
     setUp();
     TEST_ASSERT_TRUE(ls_bus_put_frame(&buffer, &frame, false));
     TEST_ASSERT_EQUAL_HEX8(0, buffer.bytes[14]);
+    TEST_ASSERT_TRUE(read_first() == LS_BUS_RIGHT && !operation.error_passive);
 }
 
 /* Nobody here reads what such a frame carries, but its length, of two bytes, must be right. */
@@ -131,6 +134,25 @@ static void an_operation_without_room_is_not_begun(void) {
     TEST_ASSERT_FALSE(ls_bus_has_room(&buffer, LS_BUS_BUFFER_BYTES - buffer.size + 1));
 }
 
+/* Whatever the memory held before: each operation is whole, and ends where it says. */
+static void nothing_behind_an_operation_is_written(void) {
+    const laconic_frame classic = {.id = 1}, fd = {.id = 1, .fd = true};
+    for (int k = 0; k < 8; k++) {
+        setUp();
+        memset(buffer.bytes, 0xEE, sizeof buffer.bytes);
+        const bool done = k == 0   ? ls_bus_put_frame(&buffer, &classic, false)
+                          : k == 1 ? ls_bus_put_frame(&buffer, &fd, false)
+                          : k == 2 ? ls_bus_put_id(&buffer, LS_BUS_CONFIRM, 1)
+                          : k == 3 ? ls_bus_put_error(&buffer, 1, LS_BUS_CRC_ERROR, LS_BUS_PRIMARY_ERROR_FLAG, true)
+                          : k == 4 ? ls_bus_put_configuration(&buffer, LS_BUS_CAN_BAUDRATE, 1)
+                          : k == 5 ? ls_bus_put_configuration(&buffer, LS_BUS_ARBITRATION_LOST_BEHAVIOR, 1)
+                          : k == 6 ? ls_bus_put_status(&buffer, LS_BUS_BUS_OFF)
+                                   : ls_bus_put_format_error(&buffer, buffer.bytes, 0);
+        TEST_ASSERT_TRUE(done && read_first() == LS_BUS_RIGHT && operation.size == buffer.size);
+        for (size_t i = buffer.size; i < 100; i++) TEST_ASSERT_EQUAL_HEX8(0xEE, buffer.bytes[i]);
+    }
+}
+
 static void what_is_sent_goes_from_the_front(void) {
     TAKES(1, 2, 3, 4, 5);
     ls_bus_drop(&buffer, 2);
@@ -175,6 +197,8 @@ static void an_operation_whose_length_cannot_be_trusted_is_all_that_is_left(void
     TEST_ASSERT_TRUE(operation.code == LS_BUS_WAKEUP && operation.size == 8);
     WRONG(0x43, 0, 0, 0, 8, 0, 0, 0);
     WRONG(0x42, 1, 0, 0, 8, 0, 0, 0);
+    WRONG(0x42, 0, 0, 1, 8, 0, 0, 0); /* all four bytes of code and length count */
+    WRONG(0x42, 0, 0, 0, 8, 0, 0, 1);
 }
 
 #define CLASSIC(id0, id1, id2, id3, ide, rtr, length, ...) \
@@ -292,6 +316,7 @@ int main(void) {
     RUN_TEST(a_frame_of_can_xl_is_as_long_as_it_says);
     RUN_TEST(the_other_operations_have_their_bytes);
     RUN_TEST(an_operation_without_room_is_not_begun);
+    RUN_TEST(nothing_behind_an_operation_is_written);
     RUN_TEST(what_is_sent_goes_from_the_front);
     RUN_TEST(a_format_error_tells_at_most_65535_bytes);
     RUN_TEST(an_operation_whose_length_cannot_be_trusted_is_all_that_is_left);

@@ -1,0 +1,25 @@
+/* What the tests of the bus share: frames that a node sends to it, and the time of one. */
+#ifndef BUS_BENCH_H
+#define BUS_BENCH_H
+
+#include "frame_time.h"
+#include "model_interface.h"
+#include "network_bench.h"
+
+static inline void put(uint32_t id, bool extended, bool remote) {
+    const laconic_frame frame = {
+        .id = id, .length = remote ? 0 : 1, .extended = extended, .remote = remote, .data = {9}};
+    TEST_ASSERT_TRUE(ls_bus_put_frame(&out, &frame, false));
+}
+
+static inline void send(const char *node) {
+    give(node, &out);
+    out.size = 0;
+}
+
+/* Of a frame with one byte at 1 Mbit/s. */
+#define ONE_S 55e-6
+
+static inline void begin(void) { OK(begin_from(0)); }
+
+#endif
