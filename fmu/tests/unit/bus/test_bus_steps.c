@@ -1,4 +1,5 @@
-/* Tests of what clocks and steps of a bus do beside their usual way: lists of clocks, ends of steps. */
+/* Tests of what clocks and steps of a bus do beside their usual way: lists of clocks and bytes, intervals, ends
+ * of steps. */
 #include "model_interface.h"
 #include "network_bench.h"
 
@@ -17,6 +18,77 @@ static void clocks_of_one_list_are_set_each(void) {
     TEST_ASSERT_TRUE(!instance()->model.port[0].rx_clock && instance()->model.port[1].rx_clock);
 }
 
+/* Of a list that cannot be set whole nothing is set. */
+static void a_wrong_clock_behind_a_right_one_is_refused(void) {
+    const fmi3ValueReference none[2] = {of_terminal("Node1", "Rx_Clock"), ref("bit_rate_bit_per_s", 0)};
+    const fmi3ValueReference last = fmu_variable_count;
+    const bool on[2] = {true, true};
+    bool active[2];
+    begin();
+    ASSERT_REFUSED(fmi3SetClock(c, none, 2, on), "there is no Clock with the value reference");
+    TEST_ASSERT_FALSE(instance()->model.port[0].rx_clock);
+    ASSERT_REFUSED(fmi3GetClock(c, none, 2, active), "there is no Clock with the value reference");
+    ASSERT_REFUSED(fmi3GetClock(c, &last, 1, active), "there is no Clock with the value reference");
+}
+
+/* A frame has passed: both nodes hear of it. */
+static void clocks_of_one_list_are_read_each(void) {
+    const fmi3ValueReference clocks[2] = {of_terminal("Node1", "Tx_Clock"), of_terminal("Node2", "Tx_Clock")};
+    const laconic_frame frame = {.id = 1};
+    bool active[2] = {false, false};
+    begin();
+    ls_bus_put_frame(&out, &frame, false);
+    give("Node1", &out);
+    update();
+    step(0, 1e-3);
+    update();
+    OK(fmi3GetClock(c, clocks, 2, active));
+    TEST_ASSERT_TRUE(active[0] && active[1]);
+}
+
+static void bytes_of_one_list_are_set_each_or_none(void) {
+    const fmi3ValueReference data[2] = {of_terminal("Node1", "Rx_Data"), of_terminal("Node2", "Rx_Data")};
+    const fmi3ValueReference wrong[2] = {data[0], of_terminal("Node2", "Tx_Data")};
+    const uint8_t one[2] = {1, 2}, other[3] = {3, 4, 5};
+    const fmi3Binary values[2] = {one, other}, swapped[2] = {other, one};
+    const size_t sizes[2] = {2, 3}, swapped_sizes[2] = {3, 2};
+    begin();
+    OK(fmi3SetBinary(c, data, 2, sizes, values, 2));
+    ASSERT_REFUSED(fmi3SetBinary(c, wrong, 2, swapped_sizes, swapped, 2), "Node2.Tx_Data cannot be set");
+    const network_port *port = instance()->model.port;
+    TEST_ASSERT_TRUE(port[0].rx.size == 2 && memcmp(port[0].rx.bytes, one, 2) == 0);
+    TEST_ASSERT_TRUE(port[1].rx.size == 3 && memcmp(port[1].rx.bytes, other, 3) == 0);
+}
+
+/* 55 bits take 55.497 and 55.503 microseconds. */
+static void an_interval_is_rounded_to_the_nearest_microsecond(void) {
+    static const int32_t rates[2] = {991044, 990937};
+    const laconic_frame frame = {.id = 1, .length = 1};
+    for (size_t k = 0; k < 2; k++) {
+        uint64_t counter = 0, resolution = 0;
+        fmi3IntervalQualifier qualifier;
+        make();
+        const fmi3ValueReference clock = of_terminal("Node2", "Tx_Clock");
+        set_integer("bit_rate_bit_per_s", rates[k]);
+        begin();
+        out.size = 0;
+        ls_bus_put_frame(&out, &frame, false);
+        give("Node1", &out);
+        update();
+        OK(fmi3GetIntervalFraction(c, &clock, 1, &counter, &resolution, &qualifier));
+        TEST_ASSERT_TRUE(counter == 55 + k && resolution == 1000000);
+    }
+}
+
+/* Importers add up their times; a billionth of a second is all that this may be wrong by. */
+static void a_step_begins_where_the_last_one_has_ended(void) {
+    begin();
+    OK(try_step(0, 0.25));
+    ASSERT_REFUSED(try_step(0.25 + 3e-9, 0.25), "but the model is at 0.25 s");
+    ASSERT_REFUSED(try_step(0.25 - 3e-9, 0.25), "but the model is at 0.25 s");
+    OK(try_step(0.25 + 0.9e-9, 0.25));
+}
+
 static void no_step_ends_early(void) {
     fmu_step_end end = {.early = true};
     begin();
@@ -31,6 +103,11 @@ static void no_step_ends_early(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(clocks_of_one_list_are_set_each);
+    RUN_TEST(a_wrong_clock_behind_a_right_one_is_refused);
+    RUN_TEST(clocks_of_one_list_are_read_each);
+    RUN_TEST(bytes_of_one_list_are_set_each_or_none);
+    RUN_TEST(an_interval_is_rounded_to_the_nearest_microsecond);
+    RUN_TEST(a_step_begins_where_the_last_one_has_ended);
     RUN_TEST(no_step_ends_early);
     return UNITY_END();
 }

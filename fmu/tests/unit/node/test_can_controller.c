@@ -200,6 +200,16 @@ static void the_limits_of_the_counters_are_127_and_255(void) {
     TEST_ASSERT_TRUE(can.transmit_errors == 256 && can.status == LS_BUS_BUS_OFF);
 }
 
+/* However long ago it became passive. */
+static void the_wait_off_the_bus_begins_when_it_goes_off(void) {
+    start(true);
+    for (uint64_t k = 1; k <= 31; k++) hear_error(1, true, 2, 1000 * k);
+    TEST_ASSERT_EQUAL(LS_BUS_ERROR_PASSIVE, can.status);
+    hear_error(1, true, 2, 50000);
+    TEST_ASSERT_EQUAL(LS_BUS_BUS_OFF, can.status);
+    TEST_ASSERT_TRUE(can.off_until_us == 50000 + 128 * 11 * 2);
+}
+
 static void an_error_of_another_frame_sends_nothing_again(void) {
     start(true);
     hear_error(0x77, true, 2, 0);
@@ -305,6 +315,7 @@ int main(void) {
     RUN_TEST(a_frame_leaves_room_for_a_status);
     RUN_TEST(a_sender_s_errors_make_it_passive_and_then_take_it_off_the_bus);
     RUN_TEST(the_limits_of_the_counters_are_127_and_255);
+    RUN_TEST(the_wait_off_the_bus_begins_when_it_goes_off);
     RUN_TEST(an_error_of_another_frame_sends_nothing_again);
     RUN_TEST(a_receiver_s_errors_make_it_passive);
     RUN_TEST(a_passive_sender_of_can_fd_says_so_in_its_frames);

@@ -18,6 +18,19 @@ static void what_nobody_takes_waits_in_the_node_and_is_told_once(void) {
     TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
 }
 
+/* The time of the run, not of the node, whose clock begins with it. */
+static void a_full_terminal_is_told_with_the_time_of_the_run(void) {
+    OK(begin_from(100));
+    step(100, 0.5);
+    instance()->model.port[0].tx.size = LS_BUS_BUFFER_BYTES - LS_BUS_LARGEST_OPERATION;
+    log_clear();
+    step(100.5, 0.25);
+    ASSERT_LOGGED("CAN.Tx_Data is full at 100.");
+    double told_s = 0;
+    TEST_ASSERT_EQUAL_INT(1, sscanf(strstr(logged, "full at ") + 8, "%lf", &told_s));
+    TEST_ASSERT_TRUE(told_s >= 100.5 && told_s <= 100.75);
+}
+
 /* Also in the middle of a step, at the instant at which its time is over. */
 static void off_the_bus_it_returns_when_its_time_is_over(void) {
     set_flag("org.fmi_standard.fmi_ls_bus.Can_BusNotifications");
@@ -83,6 +96,31 @@ static void wheels_are_shown_as_far_as_there_are_outputs(void) {
     TEST_ASSERT_TRUE(instance()->model.wheel_angle_rad[1] == 0);
 }
 
+/* A scene with fewer wheels leaves the outputs behind them. */
+static void outputs_behind_the_last_wheel_stay(void) {
+    cart(true);
+    load();
+    begin();
+    fmu_model *model = &instance()->model;
+    model->wheel_speed_rad_per_s[2] = model->wheel_angle_rad[2] = model->axle_torque_Nm[2] = 9;
+    step(0, 0.1);
+    TEST_ASSERT_TRUE(get_real("wheel_speed_rad_per_s", 3) == 9 && get_real("wheel_angle_rad", 3) == 9);
+    TEST_ASSERT_TRUE(get_real("axle_torque_Nm", 3) == 9);
+}
+
+/* Those that are held, as drives play them. */
+static void torques_are_those_at_the_axles(void) {
+    cart(true);
+    load();
+    begin();
+    set_real("body_force_N", 1, 3);
+    step(0, 0.1);
+    for (unsigned k = 0; k < 3; k++)
+        for (uint32_t wheel = 0; wheel < 2; wheel++)
+            instance()->model.node.input[k].axle_torque_Nm[wheel] = 10.0 * k + 1 + wheel;
+    TEST_ASSERT_TRUE(get_real("axle_torque_Nm", 1) == 1 && get_real("axle_torque_Nm", 2) == 2);
+}
+
 static void at_its_start_it_tells_its_bit_rate_at_the_first_communication_point(void) {
     begin();
     TEST_ASSERT_TRUE(update());
@@ -102,6 +140,7 @@ static void an_empty_node_s_next_instant_is_its_heartbeat(void) {
     const double idle_s = countdown("CAN", &known);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, laconic_node_idle_us(&instance()->model.node, 1000) * 1e-6, idle_s);
     TEST_ASSERT_TRUE(idle_s > 1e-3);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, laconic_node_idle_us(&node, 1000) * 1e-6, idle_s); /* as without an FMU */
     step(1e-3, idle_s);
     TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
     TEST_ASSERT_EQUAL_HEX32(LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HEARTBEAT, told.id);
@@ -142,10 +181,13 @@ static void with_can_fd_the_node_hears_its_frames(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_nobody_takes_waits_in_the_node_and_is_told_once);
+    RUN_TEST(a_full_terminal_is_told_with_the_time_of_the_run);
     RUN_TEST(off_the_bus_it_returns_when_its_time_is_over);
     RUN_TEST(another_start_begins_at_its_time);
     RUN_TEST(off_a_slow_bus_the_node_ticks_on);
     RUN_TEST(wheels_are_shown_as_far_as_there_are_outputs);
+    RUN_TEST(outputs_behind_the_last_wheel_stay);
+    RUN_TEST(torques_are_those_at_the_axles);
     RUN_TEST(at_its_start_it_tells_its_bit_rate_at_the_first_communication_point);
     RUN_TEST(an_empty_node_s_next_instant_is_its_heartbeat);
     RUN_TEST(times_are_rounded_to_microseconds_and_never_go_back);

@@ -131,6 +131,22 @@ static void currents_are_rounded_to_the_nearest_unit(void) {
 }
 
 /* Outputs may be read in initialization, and settings changed behind it: what the first start sent is gone. */
+/* Three thousandths beside the half, either way. */
+static void currents_beside_a_half_go_to_the_nearer_unit(void) {
+    static const double units[4] = {1.497, 1.503, -1.497, -1.503};
+    int16_t raw[4];
+    set_real("gear_ratio", 0, 1);
+    set_real("proportional_gain_As_per_rad", 0, 1);
+    set_real("integral_gain_A_per_rad", 0, 0);
+    begin();
+    for (uint32_t k = 0; k < 4; k++) set_real("setpoint_rad_per_s", k + 1, units[k] * 20 / 16384);
+    step(0, period_s);
+    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
+    told_to = 0;
+    command(raw);
+    TEST_ASSERT_TRUE(raw[0] == 1 && raw[1] == 2 && raw[2] == -1 && raw[3] == -2);
+}
+
 static void a_second_start_begins_anew(void) {
     OK(fmi3EnterInitializationMode(c, false, 0, 0, false, 0));
     TEST_ASSERT_TRUE(get_real("current_A", 1) == 0);
@@ -205,6 +221,41 @@ static void off_the_bus_time_brings_it_back(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2 * off_s, (double)instance()->model.can.off_until_us * 1e-6); /* from now */
 }
 
+/* Its wait is told in whole microseconds, and the time of a step is rounded to the nearest one. */
+static void off_the_bus_it_returns_at_the_nearest_microsecond(void) {
+    for (int late = 0; late < 2; late++) {
+        make();
+        set_flag("org.fmi_standard.fmi_ls_bus.Can_BusNotifications");
+        begin();
+        step(0, late ? 10.503e-6 : 10.497e-6);
+        for (int k = 0; k < 32; k++) ls_bus_put_error(&out, 1, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true);
+        give("CAN", &out);
+        out.size = 0;
+        update();
+        const can_controller *can = &instance()->model.can;
+        const uint64_t wait_us = 128 * 11 * 1000000U / (uint32_t)can->bit_rate_bit_per_s;
+        TEST_ASSERT_EQUAL_UINT64(wait_us + (late ? 11 : 10), can->off_until_us);
+        const double end_s = (double)can->off_until_us * 1e-6, now_s = get_real("time", 0);
+        step(now_s, end_s - 0.503e-6 - now_s);
+        TEST_ASSERT_EQUAL_INT32(LS_BUS_BUS_OFF, can->status);
+        step(end_s - 0.503e-6, 0.006e-6);
+        TEST_ASSERT_EQUAL_INT32(LS_BUS_ERROR_ACTIVE, can->status);
+    }
+}
+
+static void setpoints_are_read_before_initialization_and_outputs_are_not(void) {
+    const fmi3ValueReference setpoint = ref("setpoint_rad_per_s", 0), current = ref("current_A", 0),
+                             count = ref("frames_sent", 0);
+    double values[4] = {1, 2, 3, 4};
+    int32_t number = 7;
+    OK(fmi3SetFloat64(c, &setpoint, 1, values, 4));
+    values[3] = 0;
+    OK(fmi3GetFloat64(c, &setpoint, 1, values, 4));
+    TEST_ASSERT_TRUE(values[0] == 1 && values[3] == 4);
+    ASSERT_REFUSED(fmi3GetFloat64(c, &current, 1, values, 4), "it has no value before initialization");
+    ASSERT_REFUSED(fmi3GetInt32(c, &count, 1, &number, 1), "it has no value before initialization");
+}
+
 static void a_countdown_says_when_the_next_command_comes(void) {
     bool known;
     OK(begin_from(7));
@@ -216,6 +267,9 @@ static void a_countdown_says_when_the_next_command_comes(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.75 * period, countdown("CAN", &known));
     step(7 + 0.25 * period, 0.75 * period - 0.5e-6);
     TEST_ASSERT_TRUE(countdown("CAN", &known) == 1e-6);
+    instance()->model.time_s = 7 + period - 5e-6;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5e-6, countdown("CAN", &known));
+    instance()->model.time_s = 7 + period - 0.5e-6;
     step(7 + period - 0.5e-6, 0.5e-6);
     TEST_ASSERT_TRUE(countdown("CAN", &known) == 1e-6); /* the command is ready */
     TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
@@ -269,10 +323,13 @@ int main(void) {
     RUN_TEST(currents_are_those_of_the_limited_loops);
     RUN_TEST(at_its_limit_a_loop_goes_on);
     RUN_TEST(currents_are_rounded_to_the_nearest_unit);
+    RUN_TEST(currents_beside_a_half_go_to_the_nearer_unit);
     RUN_TEST(a_second_start_begins_anew);
     RUN_TEST(each_period_has_its_command_however_long_the_step);
     RUN_TEST(a_command_that_waits_is_replaced);
     RUN_TEST(off_the_bus_time_brings_it_back);
+    RUN_TEST(off_the_bus_it_returns_at_the_nearest_microsecond);
+    RUN_TEST(setpoints_are_read_before_initialization_and_outputs_are_not);
     RUN_TEST(a_countdown_says_when_the_next_command_comes);
     RUN_TEST(at_its_start_it_tells_its_bit_rate_at_the_first_communication_point);
     RUN_TEST(what_cannot_start_is_refused);
