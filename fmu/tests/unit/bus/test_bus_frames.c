@@ -161,6 +161,14 @@ static void what_is_ready_for_one_node_is_sent_soon(void) {
     }
 }
 
+/* The glue asks each model, also for what saved_states.c refuses before. */
+static void of_its_own_it_writes_nothing(void) {
+    fmu_stream stream = {0};
+    TEST_ASSERT_TRUE(fmu_model_serialize(&stream, &instance()->model) && stream.at == 0);
+    stream.failed = true;
+    TEST_ASSERT_FALSE(fmu_model_serialize(&stream, &instance()->model));
+}
+
 static void counts_have_no_value_before_initialization(void) {
     static const char *const names[] = {"frames_carried", "lost_arbitrations", "frames_failed", "frames_dropped"};
     double seconds = 7;
@@ -187,6 +195,7 @@ int main(void) {
     RUN_TEST(of_each_three_frames_the_third_fails);
     RUN_TEST(behind_the_last_number_a_first_frame_is_carried);
     RUN_TEST(what_is_ready_for_one_node_is_sent_soon);
+    RUN_TEST(of_its_own_it_writes_nothing);
     RUN_TEST(counts_have_no_value_before_initialization);
     return UNITY_END();
 }

@@ -116,6 +116,14 @@ static void outputs_change_in_time_by_inputs_that_were_set_last(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, KI * 3, rate);
 }
 
+/* The glue asks each model; this one has no internal step of its own. */
+static void a_communication_step_is_one_internal_step(void) {
+    uint64_t steps = 7;
+    TEST_ASSERT_TRUE(fmu_model_own_step(&instance()->model) == 0);
+    OK(fmu_model_count_steps(instance(), 0.3, 0.1, &steps));
+    TEST_ASSERT_EQUAL_UINT64(1, steps);
+}
+
 /* ----------------------------------------------------------------------------------------------- the law -- */
 
 /* Beyond its limit the integral is held whatever the size of the error. */
@@ -182,6 +190,7 @@ int main(void) {
     RUN_TEST(only_what_is_asked_for_is_computed);
     RUN_TEST(a_tuned_gain_is_taken_up_once);
     RUN_TEST(outputs_change_in_time_by_inputs_that_were_set_last);
+    RUN_TEST(a_communication_step_is_one_internal_step);
     RUN_TEST(a_small_error_holds_the_integral_too);
     RUN_TEST(no_more_states_are_written_than_there_are);
     RUN_TEST(sixteen_wheels_have_derivatives_each);

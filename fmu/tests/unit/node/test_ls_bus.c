@@ -41,6 +41,28 @@ static void takes(const uint8_t *bytes, size_t size) {
     TAKES(__VA_ARGS__); \
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_first())
 
+static void numbers_are_those_of_the_standard(void) {
+    static const int ours[] = {
+        LS_BUS_FORMAT_ERROR,     LS_BUS_CAN_TRANSMIT, LS_BUS_CAN_FD_TRANSMIT, LS_BUS_CAN_XL_TRANSMIT, LS_BUS_CONFIRM,
+        LS_BUS_ARBITRATION_LOST, LS_BUS_BUS_ERROR,    LS_BUS_CONFIGURATION,   LS_BUS_STATUS,          LS_BUS_WAKEUP};
+    static const int codes[] = {0x01, 0x10, 0x11, 0x12, 0x20, 0x30, 0x31, 0x40, 0x41, 0x42};
+    TEST_ASSERT_EQUAL_INT_ARRAY(codes, ours, sizeof codes / sizeof codes[0]);
+    TEST_ASSERT_TRUE(LS_BUS_CAN_BAUDRATE == 1 && LS_BUS_CAN_FD_BAUDRATE == 2 && LS_BUS_CAN_XL_BAUDRATE == 3);
+    TEST_ASSERT_TRUE(LS_BUS_ARBITRATION_LOST_BEHAVIOR == 4);
+    TEST_ASSERT_TRUE(LS_BUS_BUFFER_AND_RETRANSMIT == 1 && LS_BUS_DISCARD_AND_NOTIFY == 2);
+    TEST_ASSERT_TRUE(LS_BUS_ERROR_ACTIVE == 1 && LS_BUS_ERROR_PASSIVE == 2 && LS_BUS_BUS_OFF == 3);
+    TEST_ASSERT_TRUE(LS_BUS_CRC_ERROR == 4 && LS_BUS_LAST_ERROR == 6);
+    TEST_ASSERT_TRUE(LS_BUS_PRIMARY_ERROR_FLAG == 1 && LS_BUS_SECONDARY_ERROR_FLAG == 2);
+}
+
+/* 32,768 bytes are what the descriptions declare as maxSize. */
+static void the_largest_operation_is_a_whole_frame_of_can_fd(void) {
+    const laconic_frame frame = {.id = 1, .length = 64, .fd = true};
+    TEST_ASSERT_TRUE(ls_bus_put_frame(&buffer, &frame, false));
+    TEST_ASSERT_EQUAL_size_t(LS_BUS_LARGEST_OPERATION, buffer.size);
+    TEST_ASSERT_TRUE(LS_BUS_BUFFER_BYTES == 32768 && sizeof buffer.bytes == 32768);
+}
+
 static void a_classic_frame_has_its_bytes(void) {
     const laconic_frame plain = {.id = 0x123, .length = 2, .data = {0xAB, 0xCD}};
     TEST_ASSERT_TRUE(ls_bus_put_frame(&buffer, &plain, true));
@@ -311,6 +333,8 @@ static void a_full_buffer_loses_what_is_dropped(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(numbers_are_those_of_the_standard);
+    RUN_TEST(the_largest_operation_is_a_whole_frame_of_can_fd);
     RUN_TEST(a_classic_frame_has_its_bytes);
     RUN_TEST(a_frame_of_can_fd_has_its_bytes);
     RUN_TEST(a_frame_of_can_xl_is_as_long_as_it_says);
