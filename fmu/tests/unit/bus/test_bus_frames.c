@@ -79,6 +79,17 @@ static void a_frame_ends_at_its_end_to_a_few_picoseconds(void) {
     TEST_ASSERT_EQUAL_INT32(0, get_integer("frames_carried"));
     step(ONE_S - 5e-12, 4.5e-12);
     TEST_ASSERT_EQUAL_INT32(1, get_integer("frames_carried"));
+    put(0x10, false, false);
+    send("Node1");
+    update();
+    step(ONE_S, 0);
+    const double free_s = instance()->model.free_s;
+    double end_s = free_s - 1e-12; /* just so much before it */
+    while (end_s + 1e-12 > free_s) end_s = nextafter(end_s, 0);
+    while (end_s + 1e-12 < free_s) end_s = nextafter(end_s, 1);
+    TEST_ASSERT_TRUE(end_s + 1e-12 == free_s);
+    fmu_model_advance(instance(), end_s);
+    TEST_ASSERT_EQUAL_INT32(2, get_integer("frames_carried"));
 }
 
 static void the_first_frame_that_is_lost_is_told(void) {
@@ -110,6 +121,16 @@ static void one_bit_per_second_is_a_rate_of_can_fd(void) {
     step(0, 1e-3);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, frame_time_s(&frame, 1000000, 1), get_real("busy_s", 0));
     TEST_ASSERT_TRUE(get_real("busy_s", 0) > 90);
+}
+
+static void one_bit_per_second_is_a_rate(void) {
+    bool known;
+    begin();
+    ls_bus_put_configuration(&out, LS_BUS_CAN_BAUDRATE, 1);
+    put(0x10, false, false);
+    send("Node1");
+    update();
+    TEST_ASSERT_TRUE(countdown("Node2", &known) == 55 && known);
 }
 
 static void of_each_three_frames_the_third_fails(void) {
@@ -192,6 +213,7 @@ int main(void) {
     RUN_TEST(a_frame_ends_at_its_end_to_a_few_picoseconds);
     RUN_TEST(the_first_frame_that_is_lost_is_told);
     RUN_TEST(one_bit_per_second_is_a_rate_of_can_fd);
+    RUN_TEST(one_bit_per_second_is_a_rate);
     RUN_TEST(of_each_three_frames_the_third_fails);
     RUN_TEST(behind_the_last_number_a_first_frame_is_carried);
     RUN_TEST(what_is_ready_for_one_node_is_sent_soon);

@@ -121,6 +121,49 @@ static void torques_are_those_at_the_axles(void) {
     TEST_ASSERT_TRUE(get_real("axle_torque_Nm", 1) == 1 && get_real("axle_torque_Nm", 2) == 2);
 }
 
+/* Marks in the place of outputs stay until time passes. */
+static void outputs_are_computed_once_after_each_step(void) {
+    cart(true);
+    load();
+    begin();
+    fmu_model *model = &instance()->model;
+    step(0, 0.1);
+    TEST_ASSERT_TRUE(get_real("x_m", 0) == 7);
+    model->x_m = 99;
+    TEST_ASSERT_TRUE(get_real("x_m", 0) == 99);
+    step(0.1, 0.1);
+    TEST_ASSERT_TRUE(get_real("x_m", 0) == 7);
+}
+
+/* What stands in the memory behind them is none of the rig's. */
+static void as_many_frames_are_loaded_as_came(void) {
+    cart(false);
+    load();
+    instance()->model.frame_count--; /* the COMMIT is still there */
+    ASSERT_REFUSED(begin_from(0), "the scene in resources/start.bin cannot be loaded");
+    instance()->model.frame_count++;
+    OK(fmi3ExitInitializationMode(c));
+}
+
+static void inputs_are_read_before_initialization_and_outputs_are_not(void) {
+    static const char *const reals[] = {"x_m", "heading_rad", "velocity_body_m_per_s", "nu_rad_per_s",
+                                        "axle_torque_Nm"};
+    static const char *const counts[] = {"node_state", "frames_sent", "wrong_operations", "bus_status"};
+    double value = 7;
+    int32_t number = 7;
+    set_real("body_force_N", 2, 3);
+    set_real("body_moment_Nm", 0, 4);
+    TEST_ASSERT_TRUE(get_real("body_force_N", 2) == 3 && get_real("body_moment_Nm", 0) == 4);
+    for (size_t k = 0; k < sizeof reals / sizeof reals[0]; k++) {
+        const fmi3ValueReference output = ref(reals[k], k < 2 ? 0 : 1);
+        ASSERT_REFUSED(fmi3GetFloat64(c, &output, 1, &value, 1), "it has no value before initialization");
+    }
+    for (size_t k = 0; k < sizeof counts / sizeof counts[0]; k++) {
+        const fmi3ValueReference output = ref(counts[k], 0);
+        ASSERT_REFUSED(fmi3GetInt32(c, &output, 1, &number, 1), "it has no value before initialization");
+    }
+}
+
 static void at_its_start_it_tells_its_bit_rate_at_the_first_communication_point(void) {
     begin();
     TEST_ASSERT_TRUE(update());
@@ -159,9 +202,11 @@ static void times_are_rounded_to_microseconds_and_never_go_back(void) {
 
 static void with_can_fd_the_node_hears_its_frames(void) {
     const laconic_frame frame = {.id = 1, .length = 12, .fd = true};
-    for (int fd = 0; fd < 2; fd++) {
+    static const int32_t rates[3] = {0, 1, 2000000};
+    for (int k = 0; k < 3; k++) {
+        const bool fd = k > 0;
         make();
-        if (fd) set_integer("fd_bit_rate_bit_per_s", 2000000);
+        set_integer("fd_bit_rate_bit_per_s", rates[k]);
         begin();
         TEST_ASSERT_EQUAL(fd, instance()->model.node.config.can_fd);
         ls_bus_put_frame(&out, &frame, false);
@@ -188,6 +233,9 @@ int main(void) {
     RUN_TEST(wheels_are_shown_as_far_as_there_are_outputs);
     RUN_TEST(outputs_behind_the_last_wheel_stay);
     RUN_TEST(torques_are_those_at_the_axles);
+    RUN_TEST(outputs_are_computed_once_after_each_step);
+    RUN_TEST(as_many_frames_are_loaded_as_came);
+    RUN_TEST(inputs_are_read_before_initialization_and_outputs_are_not);
     RUN_TEST(at_its_start_it_tells_its_bit_rate_at_the_first_communication_point);
     RUN_TEST(an_empty_node_s_next_instant_is_its_heartbeat);
     RUN_TEST(times_are_rounded_to_microseconds_and_never_go_back);

@@ -300,14 +300,17 @@ static void it_has_no_start_values_of_its_own(void) {
 
 static void a_reset_forgets_what_was_measured(void) {
     begin();
-    set_real("setpoint_rad_per_s", 1, 5);
-    feedback(0, 500);
+    for (uint32_t k = 0; k < 4; k++) {
+        set_real("setpoint_rad_per_s", k + 1, 5);
+        feedback(k, 500);
+    }
     step(0, 4 * period_s);
     fmu_model *model = &instance()->model;
     model->start_needed = model->change_needed = model->is_due = true; /* another start, without a reset */
     update();
     TEST_ASSERT_TRUE(!model->start_needed && !model->change_needed && !model->is_due && model->periods == 0);
-    TEST_ASSERT_TRUE(model->measured_rad_per_s[0] == 0 && model->error_rad[0] == 0 && model->current_A[0] == 0);
+    for (int k = 0; k < 4; k++)
+        TEST_ASSERT_TRUE(model->measured_rad_per_s[k] == 0 && model->error_rad[k] == 0 && model->current_A[k] == 0);
     OK(fmi3Reset(c));
     begin();
     TEST_ASSERT_TRUE(get_real("measured_rad_per_s", 1) == 0 && get_real("current_A", 1) == 0);
