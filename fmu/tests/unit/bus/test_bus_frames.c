@@ -150,6 +150,24 @@ static void of_each_three_frames_the_third_fails(void) {
     }
 }
 
+/* When both have heard of it nothing is left to be sent. */
+static void an_error_is_told_to_both_nodes_and_to_no_other(void) {
+    bool known, needed = true;
+    set_integer("error_every", 1);
+    begin();
+    put(0x30, false, false);
+    send("Node1");
+    update();
+    step(0, 1e-3);
+    TEST_ASSERT_EQUAL(LS_BUS_BUS_ERROR, first_of("Node1"));
+    TEST_ASSERT_EQUAL(LS_BUS_BUS_ERROR, first_of("Node2"));
+    countdown("Node1", &known);
+    TEST_ASSERT_FALSE(known);
+    OK(fmi3EnterStepMode(c));
+    OK(fmi3DoStep(c, 1e-3, 1e-3, true, &needed, NULL, NULL, NULL));
+    TEST_ASSERT_FALSE(needed);
+}
+
 /* Behind the last number frames are counted from 1. */
 static void behind_the_last_number_a_first_frame_is_carried(void) {
     set_integer("error_every", 2);
@@ -215,6 +233,7 @@ int main(void) {
     RUN_TEST(one_bit_per_second_is_a_rate_of_can_fd);
     RUN_TEST(one_bit_per_second_is_a_rate);
     RUN_TEST(of_each_three_frames_the_third_fails);
+    RUN_TEST(an_error_is_told_to_both_nodes_and_to_no_other);
     RUN_TEST(behind_the_last_number_a_first_frame_is_carried);
     RUN_TEST(what_is_ready_for_one_node_is_sent_soon);
     RUN_TEST(of_its_own_it_writes_nothing);

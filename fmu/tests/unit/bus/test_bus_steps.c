@@ -46,6 +46,24 @@ static void clocks_of_one_list_are_read_each(void) {
     TEST_ASSERT_TRUE(active[0] && active[1]);
 }
 
+/* Which of both it is an importer may choose anew: what it has set itself needs no further iteration. */
+static void a_clock_that_was_triggered_may_be_set(void) {
+    const fmi3ValueReference clock = of_terminal("Node2", "Tx_Clock");
+    const laconic_frame frame = {.id = 1};
+    bool active = false;
+    begin();
+    ls_bus_put_frame(&out, &frame, false);
+    give("Node1", &out);
+    update();
+    step(0, 1e-3);
+    take("Node1");
+    OK(fmi3GetClock(c, &clock, 1, &active));
+    TEST_ASSERT_TRUE(active && update()); /* the iteration behind it */
+    active = true;
+    OK(fmi3SetClock(c, &clock, 1, &active));
+    TEST_ASSERT_FALSE(update());
+}
+
 static void bytes_of_one_list_are_set_each_or_none(void) {
     const fmi3ValueReference data[2] = {of_terminal("Node1", "Rx_Data"), of_terminal("Node2", "Rx_Data")};
     const fmi3ValueReference wrong[2] = {data[0], of_terminal("Node2", "Tx_Data")};
@@ -105,6 +123,7 @@ int main(void) {
     RUN_TEST(clocks_of_one_list_are_set_each);
     RUN_TEST(a_wrong_clock_behind_a_right_one_is_refused);
     RUN_TEST(clocks_of_one_list_are_read_each);
+    RUN_TEST(a_clock_that_was_triggered_may_be_set);
     RUN_TEST(bytes_of_one_list_are_set_each_or_none);
     RUN_TEST(an_interval_is_rounded_to_the_nearest_microsecond);
     RUN_TEST(a_step_begins_where_the_last_one_has_ended);

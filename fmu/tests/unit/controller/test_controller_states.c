@@ -143,13 +143,13 @@ static void a_small_error_holds_the_integral_too(void) {
 
 /* -------------------------------------------------------------------------------------- where arrays end -- */
 
-/* The importer's memory has place for just as many. */
+/* Who asks has place for just as many. */
 static void no_more_states_are_written_than_there_are(void) {
     double rates[5] = {9, 9, 9, 9, 9}, nominals[5] = {9, 9, 9, 9, 9}, states[5] = {9, 9, 9, 9, 9};
     make(fmi2ModelExchange);
     initialise();
     OK(fmi2EnterContinuousTimeMode(c));
-    OK(fmi2GetDerivatives(c, rates, 4));
+    fmu_model_get_rates(instance(), rates);
     OK(fmi2GetNominalsOfContinuousStates(c, nominals, 4));
     OK(fmi2GetContinuousStates(c, states, 4));
     TEST_ASSERT_TRUE(rates[3] == 0 && nominals[3] == 1 && states[3] == 0);

@@ -236,6 +236,7 @@ static void arguments_of_frames_are_checked(void) {
     RIGHT(CLASSIC(1, 0, 0, 0, 0, 0, 8, 1, 2, 3, 4, 5, 6, 7, 8));
     WRONG(CLASSIC(1, 0, 0, 0, 0, 0, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9));
     WRONG(CLASSIC(1, 0, 0, 0, 0, 0, 2, 9)); /* the length is another */
+    WRONG(0x10, 0, 0, 0, 17, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 1, 9);
     WRONG(0x10, 0, 0, 0, 15, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0);
     RIGHT(0x10, 0, 0, 0, 16, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0);
     WRONG(0x11, 0, 0, 0, 16, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0);

@@ -133,18 +133,21 @@ static void currents_are_rounded_to_the_nearest_unit(void) {
 /* Outputs may be read in initialization, and settings changed behind it: what the first start sent is gone. */
 /* Three thousandths beside the half, either way. */
 static void currents_beside_a_half_go_to_the_nearer_unit(void) {
-    static const double units[4] = {1.497, 1.503, -1.497, -1.503};
+    static const double beside[4] = {0.497, 0.503, -0.497, -0.503};
     int16_t raw[4];
     set_real("gear_ratio", 0, 1);
     set_real("proportional_gain_As_per_rad", 0, 1);
     set_real("integral_gain_A_per_rad", 0, 0);
     begin();
-    for (uint32_t k = 0; k < 4; k++) set_real("setpoint_rad_per_s", k + 1, units[k] * 20 / 16384);
-    step(0, period_s);
-    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
-    told_to = 0;
-    command(raw);
-    TEST_ASSERT_TRUE(raw[0] == 1 && raw[1] == 2 && raw[2] == -1 && raw[3] == -2);
+    for (int whole = 0; whole < 3; whole++) {
+        for (uint32_t k = 0; k < 4; k++)
+            set_real("setpoint_rad_per_s", k + 1, (beside[k] + (k < 2 ? whole : -whole)) * 20 / 16384);
+        step(whole * period_s, period_s);
+        TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
+        told_to = 0;
+        command(raw);
+        TEST_ASSERT_TRUE(raw[0] == whole && raw[1] == whole + 1 && raw[2] == -whole && raw[3] == -whole - 1);
+    }
 }
 
 static void a_second_start_begins_anew(void) {
