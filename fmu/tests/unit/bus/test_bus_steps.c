@@ -3,6 +3,8 @@
 #include "model_interface.h"
 #include "network_bench.h"
 
+#include <float.h>
+
 void setUp(void) { begin_test(); }
 void tearDown(void) { end_test(); }
 
@@ -64,6 +66,39 @@ static void a_clock_that_was_triggered_may_be_set(void) {
     TEST_ASSERT_FALSE(update());
 }
 
+static bool needs_event(double at_s, double step_s) {
+    bool needed = false;
+    OK(fmi3EnterStepMode(c));
+    OK(fmi3DoStep(c, at_s, step_s, true, &needed, NULL, NULL, NULL));
+    OK(fmi3EnterEventMode(c));
+    return needed;
+}
+
+/* Of either terminal alone; frames that wait for the bus are nothing to be sent. */
+static void a_step_needs_an_event_where_a_terminal_sends(void) {
+    static const char *const nodes[2] = {"Node1", "Node2"};
+    const laconic_frame frame = {.id = 1};
+    for (int k = 0; k < 2; k++) {
+        make();
+        begin();
+        TEST_ASSERT_FALSE(needs_event(0, 0));
+        memset(out.bytes, 0x99, 8); /* a wrong operation, whose answer is due */
+        out.size = 8;
+        give(nodes[k], &out);
+        update();
+        TEST_ASSERT_TRUE(needs_event(0, 0));
+    }
+    make();
+    begin();
+    out.size = 0;
+    ls_bus_put_frame(&out, &frame, false);
+    ls_bus_put_frame(&out, &frame, false);
+    give("Node1", &out);
+    update();
+    TEST_ASSERT_FALSE(needs_event(0, 1e-6));
+    TEST_ASSERT_EQUAL_size_t(16, instance()->model.node[0].queue.size);
+}
+
 static void bytes_of_one_list_are_set_each_or_none(void) {
     const fmi3ValueReference data[2] = {of_terminal("Node1", "Rx_Data"), of_terminal("Node2", "Rx_Data")};
     const fmi3ValueReference wrong[2] = {data[0], of_terminal("Node2", "Tx_Data")};
@@ -105,6 +140,32 @@ static void a_step_begins_where_the_last_one_has_ended(void) {
     ASSERT_REFUSED(try_step(0.25 + 3e-9, 0.25), "but the model is at 0.25 s");
     ASSERT_REFUSED(try_step(0.25 - 3e-9, 0.25), "but the model is at 0.25 s");
     OK(try_step(0.25 + 0.9e-9, 0.25));
+    make();
+    begin();
+    double most_s = 0; /* by so much, and no less: it grows with the time itself */
+    for (int k = 0; k < 9; k++) most_s = 1e-9 + 1e6 * DBL_EPSILON * most_s;
+    TEST_ASSERT_TRUE(most_s == 1e-9 + 1e6 * DBL_EPSILON * most_s);
+    OK(try_step(most_s, 0));
+}
+
+static void a_step_ends_by_the_stop_time_wherever_it_begins(void) {
+    OK(fmi3EnterInitializationMode(c, false, 0, 0, true, 2));
+    OK(fmi3ExitInitializationMode(c));
+    OK(try_step(0, 1));
+    ASSERT_REFUSED(try_step(1, 1.1), "the step from 1 s to 2.1 s goes beyond the stop time 2 s");
+    OK(try_step(1, 1));
+}
+
+/* As a model that has not started yet: a step starts it, or is refused with the start. */
+static void a_step_starts_what_has_not_started(void) {
+    begin();
+    instance()->model.start_needed = true;
+    OK(try_step(0, 0.25));
+    TEST_ASSERT_FALSE(instance()->model.start_needed);
+    instance()->model.start_needed = true;
+    instance()->clock.start_s = 5e9;
+    ASSERT_REFUSED(try_step(0.25, 0.25), "the start time 5000000000 s cannot be taken");
+    TEST_ASSERT_TRUE(instance()->model.time_s == 0.25);
 }
 
 static void no_step_ends_early(void) {
@@ -124,9 +185,12 @@ int main(void) {
     RUN_TEST(a_wrong_clock_behind_a_right_one_is_refused);
     RUN_TEST(clocks_of_one_list_are_read_each);
     RUN_TEST(a_clock_that_was_triggered_may_be_set);
+    RUN_TEST(a_step_needs_an_event_where_a_terminal_sends);
     RUN_TEST(bytes_of_one_list_are_set_each_or_none);
     RUN_TEST(an_interval_is_rounded_to_the_nearest_microsecond);
     RUN_TEST(a_step_begins_where_the_last_one_has_ended);
+    RUN_TEST(a_step_ends_by_the_stop_time_wherever_it_begins);
+    RUN_TEST(a_step_starts_what_has_not_started);
     RUN_TEST(no_step_ends_early);
     return UNITY_END();
 }

@@ -50,8 +50,10 @@ static inline void parameter(uint8_t field, uint8_t item, double value, bool is_
     }
 }
 
-/* A cart of two wheels with a motor on each, by a rig that the other node hears. */
-static inline void cart(bool has_drive) {
+/* A cart of two wheels with a motor on each, by a rig that the other node hears. The second motor has a drive of that
+ * protocol; 0: none has. */
+static inline void cart_with(uint8_t protocol) {
+    const bool has_drive = protocol != 0;
     static const uint8_t ones[] = {LACONIC_FIELD_MASS,          LACONIC_FIELD_YAW_INERTIA, LACONIC_FIELD_WHEEL_RADIUS,
                                    LACONIC_FIELD_WHEEL_INERTIA, LACONIC_FIELD_MOTOR_GAIN,  LACONIC_FIELD_MOTOR_DAMPING};
     uint8_t payload[LACONIC_FRAME_BYTES] = {0}, data[LACONIC_FRAME_BYTES];
@@ -69,7 +71,7 @@ static inline void cart(bool has_drive) {
         parameter(LACONIC_FIELD_AXLE, wheel, 0, true);
     }
     if (has_drive) {
-        parameter(LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, 0, 3, false);
+        parameter(LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, 0, protocol, false);
         parameter(LACONIC_DRIVES_FIELD_DRIVE_NODE_ID, 2, 7, false);
         parameter(LACONIC_DRIVES_FIELD_ENCODER_COUNTS, 2, 8192, false);
         parameter(LACONIC_DRIVES_FIELD_DRIVE_GEAR_RATIO, 2, -19, true);
@@ -83,6 +85,9 @@ static inline void cart(bool has_drive) {
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data) && data[3] == 0);
     if (has_drive) TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
 }
+
+/* With a drive of RoboMaster, or without. */
+static inline void cart(bool has_drive) { cart_with(has_drive ? 3 : 0); }
 
 static inline bool give_private(uint32_t offset, const uint8_t data[8]) {
     uint64_t bits = 0;

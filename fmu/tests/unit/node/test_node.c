@@ -158,15 +158,15 @@ static void forces_act_while_drives_play(void) {
 static void a_refused_step_of_the_core_is_told(void) {
     cart(true);
     load();
-    begin();
+    OK(begin_from(100));
     set_real("body_force_N", 1, 1.7e308);
     set_real("body_force_N", 2, 1.7e308);
     log_clear();
-    step(0, 0.2);
-    ASSERT_LOGGED("logStatusWarning: the core refused a step at 0.00");
+    step(100, 0.2);
+    ASSERT_LOGGED("logStatusWarning: the core refused a step at 100.00");
     ASSERT_LOGGED("the node is in state fault until a rig resets it");
     TEST_ASSERT_TRUE(lines == 1 && get_integer("node_state") == LACONIC_WIRE_STATE_FAULT);
-    step(0.2, 0.2);
+    step(100.2, 0.2);
     TEST_ASSERT_EQUAL_INT(1, lines);
 }
 

@@ -121,7 +121,7 @@ static void torques_are_those_at_the_axles(void) {
     TEST_ASSERT_TRUE(get_real("axle_torque_Nm", 1) == 1 && get_real("axle_torque_Nm", 2) == 2);
 }
 
-/* Marks in the place of outputs stay until time passes. */
+/* Marks in the place of outputs stay until time passes, or an event. */
 static void outputs_are_computed_once_after_each_step(void) {
     cart(true);
     load();
@@ -131,8 +131,53 @@ static void outputs_are_computed_once_after_each_step(void) {
     TEST_ASSERT_TRUE(get_real("x_m", 0) == 7);
     model->x_m = 99;
     TEST_ASSERT_TRUE(get_real("x_m", 0) == 99);
+    fmu_model_refresh(instance(), FMU_GROUPS_ALL);
+    TEST_ASSERT_TRUE(model->x_m == 99);
+    update(); /* frames may have come */
+    TEST_ASSERT_TRUE(get_real("x_m", 0) == 7);
+    model->x_m = 99;
     step(0.1, 0.1);
     TEST_ASSERT_TRUE(get_real("x_m", 0) == 7);
+}
+
+/* The node answers in the event in which a frame comes: its answer can go at the end of it. */
+static void an_answer_is_ready_in_the_event(void) {
+    bool known;
+    begin();
+    take("CAN");
+    bench_hello();
+    by_bus();
+    TEST_ASSERT_TRUE(countdown("CAN", &known) == 1e-6 && known);
+    take("CAN");
+    told_to = 0;
+    while (next() != 0 && told.id != LACONIC_WIRE_ID_BASE + LACONIC_WIRE_CHALLENGE) {
+    }
+    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, told.code);
+    TEST_ASSERT_EQUAL_HEX32(LACONIC_WIRE_ID_BASE + LACONIC_WIRE_CHALLENGE, told.id);
+}
+
+/* The boot-up message of a CANopen drive is on its way when the run begins. */
+static void what_drives_send_first_goes_at_the_start(void) {
+    cart_with(1);
+    load();
+    begin();
+    TEST_ASSERT_EQUAL_INT32(1, get_integer("frames_sent"));
+    TEST_ASSERT_EQUAL(LS_BUS_CONFIGURATION, first_of("CAN"));
+    TEST_ASSERT_EQUAL(LS_BUS_CONFIGURATION, next());
+    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, next());
+    TEST_ASSERT_TRUE(told.id == 0x700 + 7 && told.frame.length == 1 && told.frame.data[0] == 0);
+}
+
+/* Outputs may be read in initialization, and settings changed behind it: what the first start sent is gone. */
+static void a_second_start_begins_anew(void) {
+    OK(fmi3EnterInitializationMode(c, false, 0, 0, false, 0));
+    TEST_ASSERT_EQUAL_INT32(LS_BUS_ERROR_ACTIVE, get_integer("bus_status"));
+    set_integer("bit_rate_bit_per_s", 250000);
+    OK(fmi3ExitInitializationMode(c));
+    TEST_ASSERT_EQUAL(LS_BUS_CONFIGURATION, first_of("CAN"));
+    TEST_ASSERT_EQUAL_UINT32(250000, told.value);
+    TEST_ASSERT_EQUAL(LS_BUS_CONFIGURATION, next());
+    TEST_ASSERT_EQUAL(0, next());
 }
 
 /* What stands in the memory behind them is none of the rig's. */
@@ -191,9 +236,9 @@ static void an_empty_node_s_next_instant_is_its_heartbeat(void) {
 
 static void times_are_rounded_to_microseconds_and_never_go_back(void) {
     begin();
-    step(0, 1.4e-6);
+    step(0, 1.497e-6);
     TEST_ASSERT_EQUAL_UINT64(1, instance()->model.now_us);
-    step(1.4e-6, 0.2e-6);
+    step(1.497e-6, 0.006e-6);
     TEST_ASSERT_EQUAL_UINT64(2, instance()->model.now_us);
     instance()->model.time_s = 1e-6;
     OK(try_step(1e-6, 0));
@@ -234,6 +279,9 @@ int main(void) {
     RUN_TEST(outputs_behind_the_last_wheel_stay);
     RUN_TEST(torques_are_those_at_the_axles);
     RUN_TEST(outputs_are_computed_once_after_each_step);
+    RUN_TEST(an_answer_is_ready_in_the_event);
+    RUN_TEST(what_drives_send_first_goes_at_the_start);
+    RUN_TEST(a_second_start_begins_anew);
     RUN_TEST(as_many_frames_are_loaded_as_came);
     RUN_TEST(inputs_are_read_before_initialization_and_outputs_are_not);
     RUN_TEST(at_its_start_it_tells_its_bit_rate_at_the_first_communication_point);

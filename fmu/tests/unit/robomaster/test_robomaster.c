@@ -131,6 +131,21 @@ static void currents_are_rounded_to_the_nearest_unit(void) {
 }
 
 /* Outputs may be read in initialization, and settings changed behind it: what the first start sent is gone. */
+/* However small the error is: it holds the integral, or drives it back. */
+static void at_its_limit_a_loop_is_held_by_any_error(void) {
+    set_real("gear_ratio", 0, 1);
+    begin();
+    const double beyond = 10 * limit_A / ki, error = 0.25;
+    for (uint32_t k = 0; k < 4; k++) {
+        instance()->model.error_rad[k] = k < 2 ? beyond : -beyond;
+        set_real("setpoint_rad_per_s", k + 1, k % 2 == 0 ? error : -error);
+    }
+    step(0, period_s);
+    const double *integral = instance()->model.error_rad;
+    TEST_ASSERT_TRUE(integral[0] == beyond && integral[1] == beyond - error * period_s);
+    TEST_ASSERT_TRUE(integral[2] == -beyond + error * period_s && integral[3] == -beyond);
+}
+
 /* Three thousandths beside the half, either way. */
 static void currents_beside_a_half_go_to_the_nearer_unit(void) {
     static const double beside[4] = {0.497, 0.503, -0.497, -0.503};
@@ -171,6 +186,19 @@ static void each_period_has_its_command_however_long_the_step(void) {
     step(3.5 * period_s, 0.4 * period_s);
     TEST_ASSERT_EQUAL(0, first_of("CAN"));
     step(3.9 * period_s, 0.1 * period_s);
+    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
+}
+
+/* A step that ends a billionth of a period before it has reached it, with the sum of its times. */
+static void a_period_ends_at_its_end_to_a_billionth(void) {
+    begin();
+    step(0, period_s * (1 - 5e-9));
+    TEST_ASSERT_EQUAL(0, first_of("CAN"));
+    double end_s = period_s * (1 - 1e-9);
+    while (end_s / period_s + 1e-9 > 1) end_s = nextafter(end_s, 0);
+    while (end_s / period_s + 1e-9 < 1) end_s = nextafter(end_s, 1);
+    TEST_ASSERT_TRUE(end_s / period_s + 1e-9 == 1);
+    fmu_model_advance(instance(), end_s);
     TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
 }
 
@@ -229,8 +257,9 @@ static void off_the_bus_it_returns_at_the_nearest_microsecond(void) {
     for (int late = 0; late < 2; late++) {
         make();
         set_flag("org.fmi_standard.fmi_ls_bus.Can_BusNotifications");
-        begin();
-        step(0, late ? 10.503e-6 : 10.497e-6);
+        OK(begin_from(3));
+        take("CAN");
+        step(3, late ? 10.503e-6 : 10.497e-6);
         for (int k = 0; k < 32; k++) ls_bus_put_error(&out, 1, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true);
         give("CAN", &out);
         out.size = 0;
@@ -238,7 +267,7 @@ static void off_the_bus_it_returns_at_the_nearest_microsecond(void) {
         const can_controller *can = &instance()->model.can;
         const uint64_t wait_us = 128 * 11 * 1000000U / (uint32_t)can->bit_rate_bit_per_s;
         TEST_ASSERT_EQUAL_UINT64(wait_us + (late ? 11 : 10), can->off_until_us);
-        const double end_s = (double)can->off_until_us * 1e-6, now_s = get_real("time", 0);
+        const double end_s = 3 + (double)can->off_until_us * 1e-6, now_s = get_real("time", 0);
         step(now_s, end_s - 0.503e-6 - now_s);
         TEST_ASSERT_EQUAL_INT32(LS_BUS_BUS_OFF, can->status);
         step(end_s - 0.503e-6, 0.006e-6);
@@ -329,9 +358,11 @@ int main(void) {
     RUN_TEST(currents_are_those_of_the_limited_loops);
     RUN_TEST(at_its_limit_a_loop_goes_on);
     RUN_TEST(currents_are_rounded_to_the_nearest_unit);
+    RUN_TEST(at_its_limit_a_loop_is_held_by_any_error);
     RUN_TEST(currents_beside_a_half_go_to_the_nearer_unit);
     RUN_TEST(a_second_start_begins_anew);
     RUN_TEST(each_period_has_its_command_however_long_the_step);
+    RUN_TEST(a_period_ends_at_its_end_to_a_billionth);
     RUN_TEST(a_command_that_waits_is_replaced);
     RUN_TEST(off_the_bus_time_brings_it_back);
     RUN_TEST(off_the_bus_it_returns_at_the_nearest_microsecond);
