@@ -42,7 +42,7 @@ static void frames_beyond_its_place_or_its_kind_are_no_start_values(void) {
     TEST_ASSERT_FALSE(give_private(LACONIC_WIRE_RIG_OFFSETS, data));
     TEST_ASSERT_FALSE(give_private(254, data));
     TEST_ASSERT_TRUE(give_private(LACONIC_WIRE_RIG_OFFSETS - 1, data));
-    for (int k = 1; k < NETWORK_NODE_FRAMES; k++) TEST_ASSERT_TRUE(give_private(0, data));
+    for (int k = 1; k < 4096; k++) TEST_ASSERT_TRUE(give_private(0, data));
     TEST_ASSERT_FALSE(give_private(0, data));
     TEST_ASSERT_TRUE(give_private(255, data)); /* identifiers that drives use */
 }
