@@ -200,10 +200,13 @@ static void what_is_ready_for_one_node_is_sent_soon(void) {
     }
 }
 
-/* The glue asks each model, also for what saved_states.c refuses before. */
-static void of_its_own_it_writes_nothing(void) {
+/* The glue asks each model, also for what it refuses before: bytes of a state, and parameters that are tuned. */
+static void of_its_own_it_writes_and_changes_nothing(void) {
     fmu_stream stream = {0};
     TEST_ASSERT_TRUE(fmu_model_serialize(&stream, &instance()->model) && stream.at == 0);
+    instance()->model.change_needed = true;
+    OK(fmu_model_change(instance()));
+    TEST_ASSERT_FALSE(instance()->model.change_needed);
     stream.failed = true;
     TEST_ASSERT_FALSE(fmu_model_serialize(&stream, &instance()->model));
 }
@@ -236,7 +239,7 @@ int main(void) {
     RUN_TEST(an_error_is_told_to_both_nodes_and_to_no_other);
     RUN_TEST(behind_the_last_number_a_first_frame_is_carried);
     RUN_TEST(what_is_ready_for_one_node_is_sent_soon);
-    RUN_TEST(of_its_own_it_writes_nothing);
+    RUN_TEST(of_its_own_it_writes_and_changes_nothing);
     RUN_TEST(counts_have_no_value_before_initialization);
     return UNITY_END();
 }
