@@ -15,9 +15,11 @@ static const struct {
           {"start_x_m", "x_m", 0, 1},
           {"start_y_m", "y_m", 0, 2},
           {"start_heading_rad", "heading_rad", 0, 0.7},
+          {"voltage_V", "voltage_V", 1, 1},
           {"voltage_V", "voltage_V", 2, 3},
           {"voltage_V", "voltage_V", 4, -2},
           {"axle_torque_Nm", "axle_torque_Nm", 1, 0.1},
+          {"axle_torque_Nm", "axle_torque_Nm", 4, -0.2},
           {"body_force_N", "body_force_N", 1, 4},
           {"body_force_N", "body_force_N", 2, -1},
           {"body_moment_Nm", "body_moment_Nm", 0, 0.5},
@@ -69,6 +71,50 @@ static void a_step_s_derivatives_are_those_of_differences(void) {
             TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(2e-7 * (1 + fabs(found[n][k])), (side[1][k] - side[0][k]) / (2 * change),
                                               found[n][k], by[n].known);
     }
+}
+
+static double of_nu_by_voltage(void) {
+    const fmi2ValueReference nu = ref("nu_rad_per_s", 1), voltage = ref("voltage_V", 1);
+    const double one = 1;
+    double found = NOT_A_NUMBER;
+    OK(fmi2GetDirectionalDerivative(c, &nu, 1, &voltage, 1, &one, &found));
+    return found;
+}
+
+/* A motion of the body along itself is linear, so that each of equal steps has the derivatives of the first. */
+static void derivatives_are_those_of_the_last_step_alone(void) {
+    set("step_s", 0, STEP_S / 4);
+    initialise();
+    OK(step(0, STEP_S));
+    const double first = of_nu_by_voltage();
+    TEST_ASSERT_TRUE(first > 1e-3);
+    for (int n = 1; n < 5; n++) {
+        OK(step(n * STEP_S, STEP_S));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, first, of_nu_by_voltage());
+    }
+    OK(step(5 * STEP_S, STEP_S / 4));
+    TEST_ASSERT_TRUE(of_nu_by_voltage() < 0.5 * first);
+}
+
+/* As many as a vehicle may have: the last one's voltage moves the last one's angle, whose start shifts its end. */
+static void sixteen_wheels_have_derivatives(void) {
+    laconic_vehicle *v = &instance()->model.vehicle;
+    for (int k = 4; k < LACONIC_MAX_WHEELS; k++) {
+        v->wheel[k] = v->wheel[k % 4];
+        v->wheel[k].y_m *= 1 + 0.1 * k;
+    }
+    v->wheel_count = LACONIC_MAX_WHEELS;
+    set("step_s", 0, STEP_S / 4);
+    initialise();
+    OK(step(0, STEP_S));
+    const fmi2ValueReference angle = ref("wheel_angle_rad", 16), torque = ref("wheel_torque_Nm", 16),
+                             known[2] = {ref("wheel_angle_rad", 16), ref("voltage_V", 16)};
+    const double seeds[2] = {1, 0}, one = 1;
+    double found, by_volt, of_torque;
+    OK(fmi2GetDirectionalDerivative(c, &angle, 1, known, 2, seeds, &found));
+    OK(fmi2GetDirectionalDerivative(c, &angle, 1, &known[1], 1, &one, &by_volt));
+    OK(fmi2GetDirectionalDerivative(c, &torque, 1, &known[1], 1, &one, &of_torque));
+    TEST_ASSERT_TRUE(found == 1 && by_volt > 1e-6 && of_torque > 1e-3);
 }
 
 /* A wheel's angle at the start shifts that at the end; seeds of several knowns add up. */
@@ -306,6 +352,8 @@ static void terminated_model_exchange_is_at_its_instant(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_step_s_derivatives_are_those_of_differences);
+    RUN_TEST(derivatives_are_those_of_the_last_step_alone);
+    RUN_TEST(sixteen_wheels_have_derivatives);
     RUN_TEST(angles_shift_and_seeds_add_up);
     RUN_TEST(an_input_that_was_set_since_counts_for_the_next_step);
     RUN_TEST(before_a_step_derivatives_are_those_of_the_instant);

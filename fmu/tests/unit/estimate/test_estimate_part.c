@@ -1,5 +1,6 @@
 /* Tests of estimate_part.c: the error that the FMU shows is that of the core's estimate beside the same plant, through
  * changes, slopes, sensors and refusals; and the bits of the motion stay. */
+#include "estimate_part.h"
 #include "saved_bench.h"
 
 void setUp(void) { begin_test(fmi2CoSimulation); }
@@ -165,6 +166,58 @@ static void slopes_are_watched_as_samples(void) {
     }
 }
 
+/* Whatever samples have for wheels that are not there: the estimate takes them for the input that was held before. */
+static void samples_of_wheels_that_are_not_there_do_not_count(void) {
+    fmu_model *model = &instance()->model;
+    laconic_input at[3], clean[3];
+    double left = 7;
+    begin(0.05, 0.05);
+    apply(2);
+    OK(step(0, 0.5));
+    run_beside(10);
+    for (int n = 0; n < 9; n++) {
+        for (int k = 0; k < 3; k++) {
+            at[k] = clean[k] = held;
+            for (int i = 4; i < LACONIC_MAX_WHEELS; i++) at[k].voltage_V[i] = at[k].axle_torque_Nm[i] = left++;
+        }
+        TEST_ASSERT_EQUAL(LACONIC_OK, fmu_estimate_run_sampled(model, at, NULL));
+        TEST_ASSERT_EQUAL(LACONIC_OK, laconic_estimate_run_sampled(&beside, &twin, clean, NULL));
+        TEST_ASSERT_EQUAL_INT32(beside.length, model->estimate.length);
+        TEST_ASSERT_EQUAL_INT32(beside.taken, model->estimate.taken);
+    }
+    model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    compare();
+}
+
+/* Also one that has begun, in a start before: the step is not known any more. */
+static void a_start_without_a_step_has_no_estimate_yet(void) {
+    set("start_x_m", 0, 5);
+    set("start_heading_rad", 0, 1);
+    set("step_s", 0, 0.05);
+    set_flag("estimate_error", 0);
+    OK(fmi2EnterInitializationMode(c));
+    TEST_ASSERT_TRUE(get("x_m", 0) == 5 && instance()->model.estimate_begun);
+    set("step_s", 0, 0);
+    OK(fmi2ExitInitializationMode(c));
+    TEST_ASSERT_TRUE(get("x_m", 0) == 5 && get("estimated_error_rounding_place_m", 0) == 0);
+    TEST_ASSERT_TRUE(get("estimated_error_place_m", 0) == 0 && get("estimated_error_heading_rad", 0) == 0);
+    TEST_ASSERT_FALSE(instance()->model.estimate_begun);
+    OK(step(0, 0.05));
+    TEST_ASSERT_TRUE(instance()->model.estimate_begun && get("estimated_error_rounding_place_m", 0) > 0);
+}
+
+/* Only where it is asked for. */
+static void an_estimate_is_read_when_it_is_asked_for(void) {
+    begin(0.05, 0.05);
+    apply(2);
+    OK(step(0, 0.5));
+    instance()->model.estimated_unknown = 77;
+    for (uint32_t group = FMU_GROUP_MOTION; group <= FMU_GROUP_SENSORS; group *= 2)
+        fmu_model_refresh(instance(), group);
+    TEST_ASSERT_TRUE(instance()->model.estimated_unknown == 77);
+    TEST_ASSERT_TRUE(get("estimated_error_unknown_windows", 0) == 0);
+}
+
 static void a_sampled_step_that_is_refused_is_taken_back(void) {
     const fmi2ValueReference force = ref("body_force_N", 1);
     const fmi2Integer first = 1;
@@ -221,7 +274,11 @@ static void without_an_estimate_all_is_zero(void) {
     set("step_s", 0, 0.05);
     initialise();
     set("voltage_V", 1, 5);
-    instance()->model.estimated.unknown = 5; /* of another run, whose state was left */
+    FILL(instance()->model.estimated.now); /* of another run, whose state was left */
+    FILL(instance()->model.estimated.largest);
+    FILL(instance()->model.estimated.rounding);
+    instance()->model.estimated.unknown = 5;
+    instance()->model.estimated_unknown = 5;
     OK(step(0, 0.5));
     OK(step(0.5, 0.05));
     TEST_ASSERT_TRUE(get("estimated_error_place_m", 0) == 0 && get("estimated_error_largest_place_m", 0) == 0);
@@ -366,6 +423,9 @@ int main(void) {
     RUN_TEST(a_change_of_the_vehicle_carries_the_error_on);
     RUN_TEST(a_change_before_the_first_step_carries_nothing);
     RUN_TEST(slopes_are_watched_as_samples);
+    RUN_TEST(samples_of_wheels_that_are_not_there_do_not_count);
+    RUN_TEST(a_start_without_a_step_has_no_estimate_yet);
+    RUN_TEST(an_estimate_is_read_when_it_is_asked_for);
     RUN_TEST(a_sampled_step_that_is_refused_is_taken_back);
     RUN_TEST(sensors_and_an_estimate_watch_the_same_steps);
     RUN_TEST(a_refused_step_takes_the_estimate_back);

@@ -197,6 +197,46 @@ static void a_wheel_or_a_support_that_lifts_has_its_number(void) {
     }
 }
 
+/* What is told of a wheel, whatever it needs and carries. */
+static void settle_slip(double needed_N, double normal_N, double margin_N) {
+    const laconic_grip_event event = {.point = 3, .needed_N = needed_N, .normal_N = normal_N, .margin_N = margin_N};
+    instance()->model.pending_slip = event;
+    instance()->model.slip_s = 5;
+    instance()->warnings_pending = FMU_SLIP_WARNING;
+    log_clear();
+    fmu_model_settle_warnings(instance(), true);
+    TEST_ASSERT_EQUAL_INT(1, lines);
+}
+
+static void a_wheel_has_grip_as_far_as_it_carries_something(void) {
+    set("friction_coefficient", 0, 0.5);
+    initialise();
+    settle_slip(3, -2, -4);
+    ASSERT_LOGGED("at 5 s wheel 3 needs 3 N of grip and has 0 N (friction_coefficient = 0.5): 3 N are missing");
+    settle_slip(3, 0, -3);
+    ASSERT_LOGGED("needs 3 N of grip and has 0 N");
+    settle_slip(3, 0.5, -2.75);
+    ASSERT_LOGGED("needs 3 N of grip and has 0.25 N (friction_coefficient = 0.5): 2.75 N are missing");
+    settle_slip(3, 4, -1);
+    ASSERT_LOGGED("needs 3 N of grip and has 2 N (friction_coefficient = 0.5): 1 N are missing");
+}
+
+/* Their sum says whether forces are within the range. */
+static void forces_are_told_while_their_sum_is_a_number(void) {
+    const double large = 1e308;
+    initialise();
+    settle_slip(large, -large, 0);
+    ASSERT_LOGGED("needs 1e+308 N of grip");
+    settle_slip(large, 0, -large);
+    ASSERT_LOGGED("needs 1e+308 N of grip");
+    settle_slip(large, large, 0);
+    ASSERT_LOGGED("leave the range of double precision");
+    settle_slip(large, 0, large);
+    ASSERT_LOGGED("leave the range of double precision");
+    settle_slip(1, NOT_A_NUMBER, 1);
+    ASSERT_LOGGED("leave the range of double precision");
+}
+
 static void a_refused_step_gives_no_warning(void) {
     set("step_s", 0, 0.01);
     set("friction_coefficient", 0, 0.02);
@@ -243,6 +283,8 @@ int main(void) {
     RUN_TEST(a_warning_has_the_time_of_its_internal_step);
     RUN_TEST(a_warning_within_a_held_step_has_the_time_of_its_internal_step);
     RUN_TEST(a_wheel_or_a_support_that_lifts_has_its_number);
+    RUN_TEST(a_wheel_has_grip_as_far_as_it_carries_something);
+    RUN_TEST(forces_are_told_while_their_sum_is_a_number);
     RUN_TEST(a_refused_step_gives_no_warning);
     RUN_TEST(a_support_that_lifts_is_told_and_slip_after_it);
     return UNITY_END();

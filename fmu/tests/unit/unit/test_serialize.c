@@ -159,6 +159,15 @@ static void what_cannot_be_prepared_again_is_no_state(void) {
     WRONG(vehicle.wheel_count, 3);
     WRONG(sensors.settings.encoder_wrap, -1);
     WRONG(plant.slip.limit[0], 77);
+    WRONG(plant.state.heading.rest, 1.005);
+    WRONG(plant.state.heading.rest, -1.005);
+    WRONG(plant.state.heading.rest, NOT_A_NUMBER);
+    for (int side = -1; side <= 1; side += 2) {
+        model->plant.state.heading.rest = side;
+        OK(read(write()));
+        TEST_ASSERT_TRUE(model->plant.state.heading.rest == side);
+    }
+    *model = good;
     OK(read(write()));
 }
 
@@ -193,6 +202,65 @@ static void a_state_from_before_the_start_is_no_plant(void) {
     OK(fmi2EnterInitializationMode(c));
     set("mass_kg", 0, 3);
     OK(fmi2ExitInitializationMode(c));
+}
+
+/* Parameters were set after the model had started: it starts anew, and bytes that were read are written as they were. */
+static void a_state_that_must_be_started_anew_comes_back(void) {
+    static fmi2Byte first[sizeof bytes];
+    set_integer("method", 0, 1);
+    set("step_s", 0, 0.01);
+    OK(fmi2EnterInitializationMode(c));
+    TEST_ASSERT_TRUE(get("x_m", 0) == 0);
+    set("start_x_m", 0, 3);
+    const size_t size = write();
+    memcpy(first, bytes, size);
+    make(fmi2CoSimulation);
+    OK(read(size));
+    TEST_ASSERT_TRUE(instance()->model.start_needed);
+    TEST_ASSERT_EQUAL_size_t(size, write());
+    TEST_ASSERT_EQUAL_MEMORY(first, bytes, size);
+    OK(fmi2ExitInitializationMode(c));
+    TEST_ASSERT_TRUE(get("x_m", 0) == 3);
+}
+
+/* The plant that reads may have friction, and the one that was written none. */
+static void a_state_from_before_the_ground_got_friction_has_none(void) {
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0);
+    initialise();
+    set("voltage_V", 1, 6);
+    OK(step(0, 0.1));
+    const size_t size = write();
+    OK(step(0.1, 0.1));
+    const double x = get("x_m", 0);
+    OK(read(size));
+    set("ground_friction_coefficient", 0, 0.01);
+    OK(step(0.1, 0.1));
+    TEST_ASSERT_TRUE(instance()->model.plant.friction.acts && get("x_m", 0) != x);
+    OK(read(size));
+    TEST_ASSERT_FALSE(instance()->model.plant.friction.acts);
+    OK(step(0.1, 0.1));
+    TEST_ASSERT_TRUE(get("x_m", 0) == x);
+}
+
+/* As they are after the start and after a change, which nobody has read. */
+static void states_of_model_exchange_are_kept_though_nobody_has_read_them(void) {
+    double state[10];
+    for (int changed = 0; changed < 2; changed++) {
+        fmi2EventInfo info;
+        make(fmi2ModelExchange);
+        set("start_nu_rad_per_s", 1, 2);
+        set("start_x_m", 0, 3);
+        set("start_heading_rad", 0, 0.5);
+        initialise();
+        if (changed) set("payload_mass_kg", 0, 4);
+        if (changed) set("payload_x_m", 0, 0.3);
+        OK(fmi2NewDiscreteStates(c, &info));
+        into_another(fmi2ModelExchange);
+        OK(fmi2GetContinuousStates(c, state, 10));
+        TEST_ASSERT_TRUE(fabs(state[0] - 2) < 1e-13 && fabs(state[5] - 0.5) < 1e-15);
+        TEST_ASSERT_TRUE(changed ? state[3] > 3.03 && state[4] > 0.02 : state[3] == 3 && state[4] == 0);
+    }
 }
 
 /* States that were set and are not followed yet, and such that are: neither is rounded by the way through the plant. */
@@ -248,6 +316,9 @@ int main(void) {
     RUN_TEST(what_cannot_be_prepared_again_is_no_state);
     RUN_TEST(a_method_that_is_none_is_no_state);
     RUN_TEST(a_state_from_before_the_start_is_no_plant);
+    RUN_TEST(a_state_that_must_be_started_anew_comes_back);
+    RUN_TEST(a_state_from_before_the_ground_got_friction_has_none);
+    RUN_TEST(states_of_model_exchange_are_kept_though_nobody_has_read_them);
     RUN_TEST(states_of_model_exchange_come_back_to_the_last_bit);
     RUN_TEST(states_of_model_exchange_are_taken_up_with_what_follows_from_them);
     return UNITY_END();

@@ -24,6 +24,8 @@ static void a_refusal_names_the_element(void) {
     set("wheel_x_m", 3, 0.2);
     set("roller_rad", 3, 0);
     ASSERT_REFUSED(fmi2ExitInitializationMode(c), "cannot start: roller_rad[3]: with 0 rad the roller axis lies");
+    set("roller_rad", 1, 0);
+    ASSERT_REFUSED(fmi2ExitInitializationMode(c), "cannot start: roller_rad[1]: with 0 rad the roller axis lies");
 }
 
 static void wheels_that_prevent_every_motion_are_refused(void) {
@@ -157,6 +159,16 @@ static void a_sloped_step_that_is_refused_is_taken_back(void) {
     }
 }
 
+/* A number of internal steps is counted up to 9e15, which doubles still tell apart. */
+static void a_step_of_more_internal_ones_than_can_be_counted_is_refused(void) {
+    set("step_s", 0, 1);
+    initialise();
+    ASSERT_REFUSED(step(0, 9e15), "cannot be taken in internal steps of 1 s (step_s): set another step_s");
+    ASSERT_REFUSED(step(0, 9.05e15), "cannot be taken in internal steps of 1 s");
+    ASSERT_REFUSED(step(0, 2.497), "is no whole number of internal steps of 1 s (step_s); nearest that is: 2 s");
+    ASSERT_REFUSED(step(0, 2.503), "is no whole number of internal steps of 1 s (step_s); nearest that is: 3 s");
+}
+
 static void a_single_step_that_is_refused_tells_its_reason(void) {
     set("friction_coefficient", 0, 0);
     set("step_s", 0, 0.01);
@@ -287,6 +299,7 @@ int main(void) {
     RUN_TEST(a_watched_vehicle_is_watched_on_after_a_change);
     RUN_TEST(ground_may_get_friction_in_a_run);
     RUN_TEST(a_sloped_step_that_is_refused_is_taken_back);
+    RUN_TEST(a_step_of_more_internal_ones_than_can_be_counted_is_refused);
     RUN_TEST(a_single_step_that_is_refused_tells_its_reason);
     RUN_TEST(a_step_starts_a_model_that_must_be_started);
     RUN_TEST(a_refused_step_with_friction_is_taken_back);

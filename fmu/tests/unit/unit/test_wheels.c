@@ -6,53 +6,127 @@
 void setUp(void) { begin_test(fmi2CoSimulation); }
 void tearDown(void) { end_test(); }
 
-/* As many as a vehicle may have, each with an angle and a speed. */
-static void sixteen_wheels_have_38_states(void) {
-    double state[38], rate[38];
-    with_wheel_states();
+/* As many as a vehicle may have. */
+static void with_sixteen_wheels(void) {
     laconic_vehicle *v = &instance()->model.vehicle;
     for (int k = 4; k < LACONIC_MAX_WHEELS; k++) {
         v->wheel[k] = v->wheel[k % 4];
         v->wheel[k].y_m *= 1 + 0.1 * k;
     }
     v->wheel_count = LACONIC_MAX_WHEELS;
+}
+
+/* Each with an angle and a speed. */
+static void sixteen_wheels_have_38_states(void) {
+    double state[38], rate[38], found[38];
+    with_wheel_states();
+    with_sixteen_wheels();
     initialise();
     OK(fmi2EnterContinuousTimeMode(c));
     for (int k = 0; k < 38; k++) state[k] = 0.1 * k;
     OK(fmi2SetContinuousStates(c, state, 38));
+    OK(fmi2GetContinuousStates(c, found, 38));
+    TEST_ASSERT_EQUAL_MEMORY(state, found, sizeof state);
     OK(fmi2GetDerivatives(c, rate, 38));
     for (int k = 22; k < 38; k++) TEST_ASSERT_TRUE(rate[k] != 0);
     for (int k = 0; k < 16; k++) TEST_ASSERT_TRUE(rate[6 + k] == state[22 + k]);
+    TEST_ASSERT_TRUE(get("contact_state", 16) == 1 && get("drive_limit", 1) == 0 && get("drive_limit", 16) == 0);
 }
 
-/* A supply that is never short: all is as without limits, with voltages of its wheels and motion in each coordinate. */
-static void a_drive_within_its_limits_is_one_without(void) {
-    double state[10], rate[2][10], shown[2][4][5];
+/* Nothing of the last wheel gets into what stands behind it: supports and a limit of the first. */
+static void sixteen_wheels_with_limits_are_sixteen_without(void) {
+    double state[22], rate[2][22];
     for (int limited = 0; limited < 2; limited++) {
         make(fmi2ModelExchange);
+        with_sixteen_wheels();
         if (limited) set("supply_V", 0, 1000);
         if (limited) set("winding_resistance_ohm", 0, 1.5);
         initialise();
         OK(fmi2EnterContinuousTimeMode(c));
-        for (uint32_t k = 1; k <= 4; k++) set("voltage_V", k, 3 - 1.3 * k);
-        for (int k = 0; k < 10; k++) state[k] = 0.3 * k - 0.7;
-        OK(fmi2SetContinuousStates(c, state, 10));
-        for (uint32_t k = 0; k < 4; k++) {
-            double *to = shown[limited][k];
-            to[0] = get("energy_J", 0);
-            to[1] = get("wheel_speed_rad_per_s", k + 1);
-            to[2] = get("wheel_torque_Nm", k + 1);
-            to[3] = get("wheel_reaction_N", k + 1);
-            to[4] = get("wheel_angle_rad", k + 1);
-        }
-        OK(fmi2GetDerivatives(c, rate[limited], 10));
-        OK(fmi2SetContinuousStates(c, state, 10)); /* the torque first */
-        TEST_ASSERT_TRUE(get("wheel_torque_Nm", 1) == shown[limited][0][2]);
+        for (uint32_t k = 1; k <= 16; k++) set("voltage_V", k, 3 - 0.3 * k);
+        for (int k = 0; k < 22; k++) state[k] = 0.1 * k - 0.2;
+        OK(fmi2SetContinuousStates(c, state, 22));
+        OK(fmi2GetDerivatives(c, rate[limited], 22));
+        TEST_ASSERT_TRUE(get("wheel_torque_Nm", 16) != 0 && get("wheel_reaction_N", 16) != 0);
     }
-    for (int k = 0; k < 10; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, rate[0][k], rate[1][k]);
-    for (int k = 0; k < 4; k++)
-        for (int n = 0; n < 5; n++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, shown[0][k][n], shown[1][k][n]);
-    TEST_ASSERT_TRUE(rate[0][0] != 0 && rate[0][1] != 0 && shown[0][0][3] != 0);
+    for (int k = 0; k < 22; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, rate[0][k], rate[1][k]);
+    TEST_ASSERT_TRUE(rate[0][21] != 0);
+}
+
+/* Slopes of each, and how outputs of each change in time. */
+static void the_last_of_sixteen_wheels_follows_a_slope(void) {
+    const fmi2ValueReference voltage = ref("voltage_V", 16), torque = ref("wheel_torque_Nm", 16),
+                             angle = ref("wheel_angle_rad", 16);
+    const fmi2Integer first = 1;
+    const double slope = 20;
+    double rate = 0;
+    with_sixteen_wheels();
+    set("step_s", 0, 0.05);
+    set("friction_coefficient", 0, 0);
+    set_flag("has_imu", 0);
+    initialise();
+    TEST_ASSERT_FALSE(instance()->model.idle_wheels);
+    set("voltage_V", 16, 2);
+    OK(step(0, 0.05));
+    OK(fmi2SetRealInputDerivatives(c, &voltage, 1, &first, &slope));
+    OK(fmi2GetRealOutputDerivatives(c, &torque, 1, &first, &rate));
+    TEST_ASSERT_TRUE(rate != 0);
+    OK(fmi2GetRealOutputDerivatives(c, &angle, 1, &first, &rate));
+    TEST_ASSERT_TRUE(rate == get("wheel_speed_rad_per_s", 16) && rate != 0);
+    OK(step(0.05, 0.1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4, get("voltage_V", 16));
+}
+
+/* Of wheels that follow from ν: of a vehicle with rollers, one with fixed wheels behind, and one with a brake, too. */
+static void with_wheels(int kind) {
+    if (kind == 0) return;
+    for (uint32_t k = 3; k <= 4; k++) set_integer("wheel_kind", k, LACONIC_WHEEL_FIXED);
+    set("own_motor_gain_Nm_per_V", 3, 0.35);
+    set("own_motor_damping_Nms", 4, 0.21);
+    if (kind == 2) set_flag("wheel_locked", 2);
+}
+
+static const struct {
+    const char *name;
+    uint32_t count;
+} shown[] = {{"energy_J", 1},         {"velocity_body_m_per_s", 2}, {"yaw_rate_rad_per_s", 1},
+             {"wheel_angle_rad", 4},  {"wheel_speed_rad_per_s", 4}, {"wheel_torque_Nm", 4},
+             {"wheel_reaction_N", 4}, {"wheel_lateral_N", 4},       {"acceleration_body_m_per_s2", 2},
+             {"no_slip_margin_N", 1}};
+#define SHOWN 27
+
+static void read_shown(double values[SHOWN]) {
+    size_t used = 0;
+    for (size_t n = 0; n < sizeof shown / sizeof shown[0]; n++)
+        for (uint32_t k = 1; k <= shown[n].count; k++) values[used++] = get(shown[n].name, shown[n].count == 1 ? 0 : k);
+    TEST_ASSERT_EQUAL_size_t(SHOWN, used);
+}
+
+/* A supply that is never short: all is as without limits, with voltages of its wheels and motion in each coordinate,
+ * also where wheels do not allow it. Nothing else tells a shorted motor from one that gets 0 V. */
+static void a_drive_within_its_limits_is_one_without(void) {
+    double state[10], rate[2][10], values[2][SHOWN];
+    for (int kind = 0; kind < 6; kind++) {
+        for (int limited = 0; limited < 2; limited++) {
+            make(fmi2ModelExchange);
+            with_wheels(kind / 2);
+            if (limited) set("supply_V", 0, 1000);
+            if (limited) set("winding_resistance_ohm", 0, 1.5);
+            if (limited && kind % 2) set_integer("motor_circuit", 1, LACONIC_MOTOR_SHORTED);
+            initialise();
+            OK(fmi2EnterContinuousTimeMode(c));
+            for (uint32_t k = 1; k <= 4; k++) set("voltage_V", k, kind % 2 && k == 1 ? 0 : 3 - 1.3 * k);
+            for (int k = 0; k < 10; k++) state[k] = 0.3 * k - 0.7;
+            OK(fmi2SetContinuousStates(c, state, 10));
+            read_shown(values[limited]);
+            OK(fmi2GetDerivatives(c, rate[limited], 10));
+            OK(fmi2SetContinuousStates(c, state, 10)); /* the torque first */
+            TEST_ASSERT_TRUE(get("wheel_torque_Nm", 1) == values[limited][12]);
+        }
+        for (int k = 0; k < 10; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, rate[0][k], rate[1][k]);
+        for (int k = 0; k < SHOWN; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, values[0][k], values[1][k]);
+        TEST_ASSERT_TRUE(rate[0][0] != 0 && values[0][18] != 0);
+    }
 }
 
 /* At rest the body's acceleration is R ν', also where it is read before any rate; after each change of an input. */
@@ -118,6 +192,8 @@ static void sensors_watch_steps_with_slopes(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sixteen_wheels_have_38_states);
+    RUN_TEST(sixteen_wheels_with_limits_are_sixteen_without);
+    RUN_TEST(the_last_of_sixteen_wheels_follows_a_slope);
     RUN_TEST(a_drive_within_its_limits_is_one_without);
     RUN_TEST(the_acceleration_on_ground_with_friction_is_that_of_the_rates);
     RUN_TEST(a_single_wheel_slips_too);
