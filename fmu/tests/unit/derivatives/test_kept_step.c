@@ -149,6 +149,43 @@ static void an_input_that_was_set_since_counts_for_the_next_step(void) {
     TEST_ASSERT_TRUE(before[1] != after[1] && get("world_force_N", 2) == 50);
 }
 
+/* Also where outputs were read with the new input before the derivatives were asked for. */
+static void reactions_to_a_new_input_are_not_those_of_the_step(void) {
+    const fmi2ValueReference margin = ref("no_slip_margin_N", 0), known = ref("voltage_V", 1);
+    const double one = 1;
+    double before, after;
+    set("com_z_m", 0, 0.1);
+    step_from(KNOWNS, 0);
+    OK(fmi2GetDirectionalDerivative(c, &margin, 1, &known, 1, &one, &before));
+    for (int side = -1; side <= 1; side += 2) {
+        set("body_force_N", 1, 60 * side);
+        set("voltage_V", 1, -20 * side);
+        TEST_ASSERT_TRUE(get("wheel_reaction_N", 1) != 0);
+        OK(fmi2GetDirectionalDerivative(c, &margin, 1, &known, 1, &one, &after));
+        TEST_ASSERT_TRUE(before == after && before != 0);
+    }
+}
+
+/* Of a force that does not act: at rest and unrotated world and body have the same axes. */
+static void a_force_on_the_world_s_axes_has_derivatives_where_none_acts(void) {
+    const fmi2ValueReference nu = ref("nu_rad_per_s", 0), x = ref("x_m", 0);
+    const double one = 1;
+    initialise();
+    OK(step(0, STEP_S));
+    for (uint32_t k = 1; k <= 2; k++) {
+        const fmi2ValueReference known[2] = {ref("body_force_N", k), ref("world_force_N", k)};
+        const fmi2ValueReference of_nu = nu << FMU_ELEMENT_SHIFT | k;
+        double found[2][2];
+        for (int n = 0; n < 2; n++) {
+            OK(fmi2GetDirectionalDerivative(c, &of_nu, 1, &known[n], 1, &one, &found[n][0]));
+            OK(fmi2GetDirectionalDerivative(c, &x, 1, &known[n], 1, &one, &found[n][1]));
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, found[0][0], found[1][0]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, found[0][1], found[1][1]);
+        TEST_ASSERT_TRUE(found[0][0] > 1e-3 && (k == 2 || found[0][1] > 1e-5));
+    }
+}
+
 static double by_voltage(void) {
     const fmi2ValueReference x = ref("x_m", 0), voltage = ref("voltage_V", 2);
     const double one = 1;
@@ -356,6 +393,8 @@ int main(void) {
     RUN_TEST(sixteen_wheels_have_derivatives);
     RUN_TEST(angles_shift_and_seeds_add_up);
     RUN_TEST(an_input_that_was_set_since_counts_for_the_next_step);
+    RUN_TEST(reactions_to_a_new_input_are_not_those_of_the_step);
+    RUN_TEST(a_force_on_the_world_s_axes_has_derivatives_where_none_acts);
     RUN_TEST(before_a_step_derivatives_are_those_of_the_instant);
     RUN_TEST(a_remainder_and_a_refused_step_leave_the_last_one);
     RUN_TEST(a_step_with_slopes_has_none);

@@ -72,6 +72,23 @@ static void a_contact_at_the_width_of_the_law_does_not_slip(void) {
     }
 }
 
+/* The centre of mass above the axle in front: in numbers that doubles have exactly. */
+static void a_wheel_that_carries_nothing_has_not_lifted(void) {
+    double state[STATES] = {0};
+    with_wheel_states();
+    for (uint32_t k = 1; k <= 4; k++) {
+        set("wheel_x_m", k, k < 3 ? 0.5 : -0.5);
+        set("wheel_y_m", k, k % 2 ? 0.5 : -0.5);
+    }
+    set("com_x_m", 0, 0.5);
+    set("com_z_m", 0, 0);
+    initialise();
+    OK(fmi2EnterContinuousTimeMode(c));
+    OK(fmi2SetContinuousStates(c, state, STATES));
+    for (uint32_t k = 1; k <= 4; k++) TEST_ASSERT_TRUE(get("contact_state", k) == 0);
+    TEST_ASSERT_TRUE(instance()->model.ground.normal_N[2] == 0 && instance()->model.ground.normal_N[3] == 0);
+}
+
 /* Under so high a centre of mass that the vehicle would tilt. */
 static void a_contact_that_lifts_is_told_by_2(void) {
     double state[STATES] = {0};
@@ -96,6 +113,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_contact_slips_above_the_width_of_the_law);
     RUN_TEST(a_contact_at_the_width_of_the_law_does_not_slip);
+    RUN_TEST(a_wheel_that_carries_nothing_has_not_lifted);
     RUN_TEST(a_contact_that_lifts_is_told_by_2);
     return UNITY_END();
 }

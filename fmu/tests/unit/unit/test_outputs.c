@@ -185,10 +185,10 @@ static void ask_for(fmi2Type kind, int ground, uint32_t group) {
             for (size_t k = 0; k < members[n].size / sizeof(double); k++) doubles_of(n)[k] = 77;
     const uint32_t before = model->stale;
     fmu_model_refresh(instance(), group);
-    /* rates of Model Exchange follow from its continuous states alone */
-    const uint32_t state = (model->stale ^ before) & FMU_GROUP_STATE;
+    /* in Model Exchange with the plant's state, which rates do not need: a solver asks for them alone */
+    const bool by_states = (group & states) != 0 || (group == FMU_GROUP_RATES && ground != ROLLS);
+    const uint32_t state = continuous && !by_states ? FMU_GROUP_STATE : 0;
     TEST_ASSERT_EQUAL_HEX32(before & ~fresh & ~state, model->stale);
-    TEST_ASSERT_TRUE(!continuous || state != 0 || (before & fresh) == FMU_GROUP_RATES || (before & fresh) == 0);
     for (size_t n = 0; n < MEMBERS; n++) {
         if ((members[n].group & (states | used)) != 0) continue;
         for (size_t k = 0; k < members[n].size / sizeof(double); k++) TEST_ASSERT_TRUE(doubles_of(n)[k] == 77);
