@@ -119,10 +119,10 @@ static void states_that_are_set_one_by_one_are_there_to_the_last_bit(void) {
 static fmi3Instance third;
 static bool reads, strong;
 
-static double third_x(void) {
-    const fmi3ValueReference x = ref("x_m", 0);
+static double third_get(const char *name, uint32_t element) {
+    const fmi3ValueReference reference = ref(name, element);
     double value = NOT_A_NUMBER;
-    OK(fmi3GetFloat64(third, &x, 1, &value, 1));
+    OK(fmi3GetFloat64(third, &reference, 1, &value, 1));
     return value;
 }
 
@@ -135,7 +135,7 @@ static void third_set(const char *name, uint32_t element, double value) {
 static void between(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean set_requested, fmi3Boolean get_allowed,
                     fmi3Boolean finished, fmi3Boolean can_return, fmi3Boolean *early, fmi3Float64 *early_time) {
     (void)e, (void)time, (void)set_requested, (void)get_allowed, (void)finished, (void)can_return, (void)early_time;
-    if (reads) (void)third_x();
+    if (reads) (void)third_get("x_m", 0);
     if (strong) third_set("body_force_N", 1, 1.7e308);
     if (strong) third_set("body_force_N", 2, 1.7e308);
     *early = false;
@@ -146,41 +146,67 @@ static fmi3Status third_step(double at_s, double step_s) {
 }
 
 static void begin_third(bool sensors) {
-    const fmi3ValueReference imu = ref("has_imu", 0);
+    const fmi3ValueReference imu = ref("has_imu", 0), counts = ref("encoder_counts_per_turn", 1);
+    const int32_t per_turn = 4096;
     third =
         fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, true, false, false, NULL, 0, NULL, log_3, between);
     third_set("step_s", 0, 0.05);
     third_set("friction_coefficient", 0, 0);
     if (sensors) OK(fmi3SetBoolean(third, &imu, 1, &sensors, 1));
+    if (sensors) OK(fmi3SetInt32(third, &counts, 1, &per_turn, 1));
     OK(fmi3EnterInitializationMode(third, false, 0, 0, false, 0));
     OK(fmi3ExitInitializationMode(third));
     third_set("voltage_V", 1, 5);
 }
 
+#define SEEN 4
+
+static void see(double found[SEEN]) {
+    found[0] = third_get("x_m", 0);
+    found[1] = third_get("wheel_angle_rad", 1);
+    found[2] = third_get("encoder_count", 1);
+    found[3] = third_get("imu_acceleration_m_per_s2", 1);
+}
+
 /* Where the vehicle is after a step, and after another; between the two, perhaps, one that is refused. */
-static void run_third(double x_m[2], bool sensors, bool refused) {
+static void run_third(double found[2][SEEN], bool sensors, bool refused) {
     begin_third(sensors);
     OK(third_step(0, 0.2));
     strong = refused;
     if (refused) ASSERT_DISCARDED(third_step(0.2, 0.2), "is refused");
     strong = false;
-    x_m[0] = third_x();
+    see(found[0]);
     OK(third_step(0.2, 0.2));
-    x_m[1] = third_x();
+    see(found[1]);
     fmi3FreeInstance(third);
 }
 
-/* Motion, input and outputs are those of before, whether or not somebody had read on the way; and so it goes on. */
+/* Motion, input, sensors and outputs are those of before, whether or not somebody had read on the way; and so it goes
+ * on. */
 static void a_step_with_updates_that_is_refused_is_taken_back(void) {
-    double usual[2], found[2];
-    reads = false;
-    run_third(usual, false, false);
-    TEST_ASSERT_TRUE(usual[0] != 0 && usual[1] != usual[0]);
-    for (int kind = 0; kind < 4; kind++) {
-        reads = kind % 2 == 1;
-        run_third(found, kind / 2 == 1, true);
-        TEST_ASSERT_EQUAL_MEMORY(usual, found, sizeof usual);
+    double usual[2][SEEN], found[2][SEEN];
+    for (int sensors = 0; sensors < 2; sensors++) {
+        reads = false;
+        run_third(usual, sensors == 1, false);
+        TEST_ASSERT_TRUE(usual[0][0] != 0 && usual[1][0] != usual[0][0] && (usual[0][2] != 0) == sensors);
+        for (int read = 0; read < 2; read++) {
+            reads = read == 1;
+            run_third(found, sensors == 1, true);
+            TEST_ASSERT_EQUAL_MEMORY(usual, found, sizeof usual);
+        }
     }
+}
+
+/* An importer that has added up its times ends with it. */
+static void a_remainder_of_time_moves_nothing(void) {
+    set("friction_coefficient", 0, 0);
+    initialise();
+    set("voltage_V", 1, 5);
+    OK(step(0, 0.1));
+    const double x = get("x_m", 0);
+    OK(step(0.1, 1e-9));
+    TEST_ASSERT_TRUE(get("x_m", 0) == x && x != 0);
+    TEST_ASSERT_EQUAL_UINT64(1, instance()->model.plant.steps);
 }
 
 /* In a single internal step, too. */
@@ -207,6 +233,7 @@ int main(void) {
     RUN_TEST(model_exchange_goes_on_as_the_changed_vehicle);
     RUN_TEST(states_that_are_set_one_by_one_are_there_to_the_last_bit);
     RUN_TEST(a_step_with_updates_that_is_refused_is_taken_back);
+    RUN_TEST(a_remainder_of_time_moves_nothing);
     RUN_TEST(a_slope_moves_its_input_in_one_internal_step);
     return UNITY_END();
 }

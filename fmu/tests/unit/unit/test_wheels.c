@@ -75,6 +75,7 @@ static void the_last_of_sixteen_wheels_follows_a_slope(void) {
     TEST_ASSERT_TRUE(rate == get("wheel_speed_rad_per_s", 16) && rate != 0);
     OK(step(0.05, 0.1));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4, get("voltage_V", 16));
+    TEST_ASSERT_TRUE(get("imu_acceleration_m_per_s2", 1) != 0 && get("encoder_count", 16) == 0);
 }
 
 /* Of wheels that follow from ν: of a vehicle with rollers, one with fixed wheels behind, and one with a brake, too. */
@@ -170,6 +171,35 @@ static void wheels_that_are_not_there_have_no_sensors(void) {
     }
 }
 
+/* One count a turn, which is little, and an encoder all the same. */
+static void an_encoder_counts_turns(void) {
+    set("step_s", 0, 0.05);
+    set("friction_coefficient", 0, 0);
+    set_integer("encoder_counts_per_turn", 2, 1);
+    initialise();
+    set("voltage_V", 2, 12);
+    for (int n = 0; n < 100; n++) OK(fmi2DoStep(c, n, 1, fmi2True));
+    const double turns = get("wheel_angle_rad", 2) / (2 * 3.14159265358979);
+    TEST_ASSERT_TRUE(turns > 2);
+    TEST_ASSERT_DOUBLE_WITHIN(1, turns, get("encoder_count", 2));
+}
+
+/* Also in an instance that has shown other numbers before: with encoders alone, and without sensors. */
+static void without_an_imu_its_outputs_are_zero(void) {
+    for (int encoders = 0; encoders < 2; encoders++) {
+        make(fmi2CoSimulation);
+        set("step_s", 0, 0.05);
+        if (encoders) set_integer("encoder_counts_per_turn", 1, 4096);
+        initialise();
+        OK(fmi2DoStep(c, 0, 0.1, fmi2True));
+        laconic_sensor_outputs *shown_before = &instance()->model.sensed;
+        shown_before->imu_acceleration_m_per_s2[0] = shown_before->imu_acceleration_m_per_s2[1] = 3;
+        shown_before->imu_yaw_rate_rad_per_s = 3;
+        for (uint32_t k = 1; k <= 2; k++) TEST_ASSERT_TRUE(get("imu_acceleration_m_per_s2", k) == 0);
+        TEST_ASSERT_TRUE(get("imu_yaw_rate_rad_per_s", 0) == 0);
+    }
+}
+
 static void sensors_watch_steps_with_slopes(void) {
     const fmi2ValueReference voltage = ref("voltage_V", 1);
     const fmi2Integer first = 1;
@@ -198,6 +228,8 @@ int main(void) {
     RUN_TEST(the_acceleration_on_ground_with_friction_is_that_of_the_rates);
     RUN_TEST(a_single_wheel_slips_too);
     RUN_TEST(wheels_that_are_not_there_have_no_sensors);
+    RUN_TEST(an_encoder_counts_turns);
+    RUN_TEST(without_an_imu_its_outputs_are_zero);
     RUN_TEST(sensors_watch_steps_with_slopes);
     return UNITY_END();
 }
