@@ -171,6 +171,21 @@ static void wheels_that_are_not_there_have_no_sensors(void) {
     }
 }
 
+/* Counts have no place beside their own. */
+static void sixteen_encoders_leave_rates_as_they_are(void) {
+    with_sixteen_wheels();
+    set("step_s", 0, 0.05);
+    set("friction_coefficient", 0, 0);
+    set("ground_friction_coefficient", 0, 0.4);
+    for (uint32_t k = 1; k <= 16; k++) set_integer("encoder_counts_per_turn", k, 4096);
+    initialise();
+    for (uint32_t k = 1; k <= 16; k++) set("voltage_V", k, 6);
+    OK(fmi2DoStep(c, 0, 0.5, fmi2True));
+    const double rate = get("der(wheel_speed_rad_per_s)", 1);
+    TEST_ASSERT_TRUE(rate != 0 && get("encoder_count", 1) != 0 && get("encoder_count", 16) != 0);
+    TEST_ASSERT_TRUE(get("der(wheel_speed_rad_per_s)", 1) == rate);
+}
+
 /* One count a turn, which is little, and an encoder all the same. */
 static void an_encoder_counts_turns(void) {
     set("step_s", 0, 0.05);
@@ -228,6 +243,7 @@ int main(void) {
     RUN_TEST(the_acceleration_on_ground_with_friction_is_that_of_the_rates);
     RUN_TEST(a_single_wheel_slips_too);
     RUN_TEST(wheels_that_are_not_there_have_no_sensors);
+    RUN_TEST(sixteen_encoders_leave_rates_as_they_are);
     RUN_TEST(an_encoder_counts_turns);
     RUN_TEST(without_an_imu_its_outputs_are_zero);
     RUN_TEST(sensors_watch_steps_with_slopes);
