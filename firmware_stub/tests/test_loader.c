@@ -405,7 +405,8 @@ static void a_number_that_no_field_has_is_unknown(void) {
 
 /* laconic.dbc and the rows of vehicle.h, settings.h and sensors.h each have the number. */
 static void test_the_wire_numbers_each_field_as_its_row_does(void) {
-#define COMPARED(of, number, IDENTIFIER, ...) TEST_ASSERT_EQUAL_MESSAGE(LACONIC_WIRE_FIELD_##IDENTIFIER, number, #IDENTIFIER);
+#define COMPARED(of, number, IDENTIFIER, ...) \
+    TEST_ASSERT_EQUAL_MESSAGE(LACONIC_WIRE_FIELD_##IDENTIFIER, number, #IDENTIFIER);
     LACONIC_LOADER_EVERY(COMPARED)
 #undef COMPARED
 }
