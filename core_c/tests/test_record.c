@@ -294,22 +294,29 @@ static void a_refused_step_keeps_the_steps_taken_and_gives_the_reason(void) {
     TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
 }
 
+/* By the check of the input, and by the step itself. */
 static void a_step_that_is_refused_beside_sensors_gives_the_reason_too(void) {
-    for (int is_held = 0; is_held < 2; is_held++) {
+    for (int k = 0; k < 4; k++) {
+        const bool is_held = k % 2 == 0, turns_too_far = k / 2 == 1;
         laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
         laconic_sensor_settings settings;
         laconic_sensors sensors;
         laconic_schedule schedule = is_held ? held() : sampled();
         film f;
         memset(&settings, 0, sizeof settings);
-        memset(&why, 0, sizeof why);
         ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, &plant, &why));
         load_film(&f, &plant, 1, STEPS);
         f.recorder.sensors = &sensors;
-        sampled_values[0][1][1] = NOT_A_NUMBER;
-        if (is_held) schedule.value = &sampled_values[0][1][0];
-        ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0,
-                       laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
+        if (turns_too_far) {
+            plant.state.heading.turns = INT64_MAX;
+            ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0,
+                           laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
+        } else {
+            sampled_values[0][1][1] = NOT_A_NUMBER;
+            if (is_held) schedule.value = &sampled_values[0][1][0];
+            ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0,
+                           laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
+        }
         TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
     }
 }
