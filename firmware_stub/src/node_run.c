@@ -81,15 +81,11 @@ static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
 
 void laconic_node_run_lockstep(laconic_node *node) {
     laconic_refusal why = {0};
-    laconic_status status;
     uint32_t steps = node->lockstep.steps_due;
     if (steps == 0) return;
-    if (node->raw_input.take & LACONIC_RAW_SAMPLED) {
-        status = step_sampled(node, &why);
-    } else {
-        if (steps > LACONIC_NODE_STEPS_PER_TICK) steps = LACONIC_NODE_STEPS_PER_TICK;
-        status = step(node, steps, &why);
-    }
+    if (steps > LACONIC_NODE_STEPS_PER_TICK) steps = LACONIC_NODE_STEPS_PER_TICK;
+    const bool sampled = (node->raw_input.take & LACONIC_RAW_SAMPLED) != 0; /* SYNC lets pass one step of these alone */
+    const laconic_status status = sampled ? step_sampled(node, &why) : step(node, steps, &why);
     if (status != LACONIC_OK) {
         laconic_node_fail(node, &why, node->lockstep.request);
         return;
