@@ -163,6 +163,17 @@ static void frames_in_order_are_right_and_each_is_the_next_reference(void) {
     TEST_ASSERT_TRUE(receiver.lost == 1 && receiver.counter == 5);
 }
 
+static void each_gap_is_told_by_itself(void) {
+    laconic_e2e_receiver receiver = {0};
+    laconic_e2e_check(&receiver, true, 1, 15, 3);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK_SOME_LOST, laconic_e2e_check(&receiver, true, 4, 15, 3));
+    TEST_ASSERT_EQUAL_UINT8(2, receiver.lost);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK_SOME_LOST, laconic_e2e_check(&receiver, true, 6, 15, 3));
+    TEST_ASSERT_EQUAL_UINT8(1, receiver.lost);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, 7, 15, 3));
+    TEST_ASSERT_EQUAL_UINT8(0, receiver.lost);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
@@ -180,5 +191,6 @@ int main(void) {
     RUN_TEST(stray_frames_that_do_not_follow_each_other_make_no_reference);
     RUN_TEST(a_counter_takes_the_place_of_what_stood_there);
     RUN_TEST(frames_in_order_are_right_and_each_is_the_next_reference);
+    RUN_TEST(each_gap_is_told_by_itself);
     return UNITY_END();
 }

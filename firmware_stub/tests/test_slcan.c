@@ -299,6 +299,16 @@ static void a_line_ends_with_cr_alone(void) {
     answers("t20\t00\r", "\a");
 }
 
+static void a_line_is_written_whatever_stood_there(void) {
+    static const char expected[] = "t12331AB2C3\r";
+    char text[LACONIC_SLCAN_LINE];
+    memset(text, 0x5A, sizeof text);
+    feed("O\r");
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed(expected));
+    TEST_ASSERT_EQUAL_size_t(sizeof expected - 1, laconic_slcan_write(&slcan, &frame, text));
+    TEST_ASSERT_EQUAL_MEMORY(expected, text, sizeof expected - 1);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
@@ -326,5 +336,6 @@ int main(void) {
     RUN_TEST(a_closed_channel_takes_no_frames);
     RUN_TEST(a_line_ends_with_cr_alone);
     RUN_TEST(a_remote_frame_without_bytes_is_written_without_bytes);
+    RUN_TEST(a_line_is_written_whatever_stood_there);
     return UNITY_END();
 }
