@@ -116,10 +116,37 @@ static void a_change_that_is_made_tells_no_refusal(void) {
     TEST_ASSERT_EQUAL_MEMORY(&as_it_was, &why, sizeof why);
 }
 
+/* The change takes S outwards, where a place is known to fewer digits, and the body drives back: no window ends out
+ * there, and none does where its first step is refused. */
+static void a_step_that_is_refused_after_a_change_leaves_nothing_in_the_estimate(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    laconic_vehicle loaded = v;
+    loaded.payload.mass_kg = 30;
+    loaded.payload.x_m = REAL(-1);
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(0, 0, 0), 0.01);
+    const laconic_plant before = plant;
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &loaded, &why));
+    estimate = carried_with(&before, &plant, estimate);
+    laconic_plant other = plant;
+    laconic_estimate without = estimate;
+    laconic_input input = no_input();
+    input.voltage_V[0] = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_estimate_run(&estimate, &plant, &input, 1, &why));
+    input = no_input();
+    input.body_force_N[0] = 50;
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 50, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&without, &other, &input, 50, &why));
+    const laconic_errors found = errors_now(&estimate, &plant), expected = errors_now(&without, &other);
+    TEST_ASSERT_EQUAL_MEMORY(&expected.now, &found.now, sizeof found.now);
+    TEST_ASSERT_EQUAL_MEMORY(&expected.largest, &found.largest, sizeof found.largest);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_error_is_of_the_same_motion_in_another_model);
     RUN_TEST(doubts_and_floors_are_carried_as_sizes);
     RUN_TEST(a_change_that_is_made_tells_no_refusal);
+    RUN_TEST(a_step_that_is_refused_after_a_change_leaves_nothing_in_the_estimate);
     return UNITY_END();
 }

@@ -48,6 +48,9 @@ static void a_half_step_that_cannot_be_prepared_is_refused(void) {
     laconic_estimate estimate;
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, laconic_estimate_start(&estimate, &plant, 1, NULL, &why),
                    why);
+    /* The finer method, which cannot be prepared at all, is not reached. */
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0,
+                   laconic_estimate_start(&estimate, &plant, 1, &laconic_auto_slow, &why), why);
     v.motor_damping_Nms = REAL(100 * DAMPING);
     plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.1);
     ASSERT_REFUSED(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0,

@@ -68,6 +68,18 @@ static void windows_double_until_they_could_turn_half_a_radian(void) {
     }
 }
 
+/* A puck that yaws by an eighth of a radian in each step: four steps turn by just half a radian. */
+static void a_window_may_turn_by_half_a_radian_to_the_last_bit(void) {
+    laconic_vehicle v = bare_body();
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = 1;
+    const laconic_input input = no_input();
+    laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(0, 0, 0.125), 1);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 1 + 1 + 2, &why));
+    TEST_ASSERT_EQUAL_UINT64(1, laconic_estimate_before(&estimate, &plant, &input, 1, 10));
+    TEST_ASSERT_EQUAL_INT(4, estimate.length);
+}
+
 /* Windows of hundreds of steps measure one of them each. What they say is what windows of one step say, within a
  * fiftieth, also amid a window. */
 static void long_windows_say_what_single_steps_say(void) {
@@ -273,6 +285,7 @@ int main(void) {
     RUN_TEST(the_same_input_goes_on_with_the_window);
     RUN_TEST(a_change_of_any_number_of_the_input_begins_a_window_of_one_step);
     RUN_TEST(windows_double_until_they_could_turn_half_a_radian);
+    RUN_TEST(a_window_may_turn_by_half_a_radian_to_the_last_bit);
     RUN_TEST(long_windows_say_what_single_steps_say);
     RUN_TEST(what_fades_is_a_share);
     RUN_TEST(a_refused_step_leaves_nothing_in_the_estimate);

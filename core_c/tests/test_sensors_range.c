@@ -65,6 +65,57 @@ static void of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_p
     }
 }
 
+/* Half a metre from the axis, and where both are as far or as large but for the last digits: the first coordinate of two
+ * that are as far, and of two parts that are as large the second. */
+static void ties_and_small_differences_are_told_apart(void) {
+    const double next = 2e5 + EITHER(3e-11, 0.02); /* the next number */
+    const struct {
+        double yaw_rad_per_s, x_m, y_m;
+        laconic_sensor_field far;
+        int sign; /* of the part that is told */
+    } places[] = {{1e8, 0, 0.5, LACONIC_SENSOR_FIELD_IMU_Y, -1},
+                  {1e8, 0.5, 0, LACONIC_SENSOR_FIELD_IMU_X, -1},
+                  {1e8, 0.5, -0.25, LACONIC_SENSOR_FIELD_IMU_X, -1},
+                  {1e8, 2, 2, LACONIC_SENSOR_FIELD_IMU_X, -1},
+                  {1e8, 2, -2, LACONIC_SENSOR_FIELD_IMU_X, 1},
+                  {1e5, next, -2e5, LACONIC_SENSOR_FIELD_IMU_X, -1},
+                  {1e5, 2e5, -next, LACONIC_SENSOR_FIELD_IMU_Y, 1}};
+    laconic_vehicle v = bare_body();
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = 1;
+    const laconic_input input = no_input();
+    for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
+        laconic_plant plant = started(v, 1e-6, 0, 0, places[k].yaw_rad_per_s);
+        laconic_sensor_settings settings = {0};
+        settings.imu.x_m = REAL(places[k].x_m);
+        settings.imu.y_m = REAL(places[k].y_m);
+        laconic_sensors sensors = beside(&plant, settings);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)places[k].far, 0,
+                       laconic_sensors_run(&sensors, &plant, &input, 1, &why), why);
+        TEST_ASSERT_TRUE(places[k].sign < 0 ? why.value < 0 : why.value > 0);
+    }
+}
+
+/* A body that yaws by 1e5 rad/s feels the largest number that there may be at 1e5 m; the next number is beyond. */
+static void a_sample_may_be_the_largest_number_and_no_larger(void) {
+    laconic_vehicle v = bare_body();
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = 1;
+    const laconic_input input = no_input();
+    const laconic_real far = REAL(1e5), farther = far + EITHER(REAL(6e-11), REAL(0.01));
+    for (int axis = 0; axis < 2; axis++) {
+        laconic_plant plant = started(v, 1e-6, 0, 0, 1e5);
+        laconic_sensor_settings settings = {0};
+        laconic_real *place = axis == 0 ? &settings.imu.x_m : &settings.imu.y_m;
+        *place = far;
+        laconic_sensors sensors = beside(&plant, settings);
+        ASSERT_STATUS(LACONIC_OK, laconic_sensors_run(&sensors, &plant, &input, 1, &why));
+        TEST_ASSERT_TRUE(sensors.sample[1].specific_force_m_per_s2[axis] == -REAL(1e15));
+        *place = farther;
+        sensors = beside(&plant, settings);
+        TEST_ASSERT_TRUE((double)farther * 1e10 < 1e15 + EITHER(1, 1e8));
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_sensors_run(&sensors, &plant, &input, 1, &why));
+    }
+}
+
 static void a_watched_run_ends_with_the_step_whose_sample_is_refused(void) {
     const laconic_sensor_settings settings = {.imu = {.x_m = REAL(1e15), .delay_steps = 1}};
     laconic_plant plant = started(bare_body(), STEP, 0, 0, 2 * BIG_LAMBDA);
@@ -161,6 +212,8 @@ int main(void) {
     RUN_TEST(the_last_encoder_that_there_can_be_is_checked);
     RUN_TEST(of_a_wheel_that_is_too_fast_to_count_its_turn_is_told);
     RUN_TEST(of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told);
+    RUN_TEST(ties_and_small_differences_are_told_apart);
+    RUN_TEST(a_sample_may_be_the_largest_number_and_no_larger);
     RUN_TEST(a_watched_run_ends_with_the_step_whose_sample_is_refused);
     RUN_TEST(a_recorded_run_ends_with_the_step_whose_sample_is_refused);
     RUN_TEST(an_encoder_of_any_number_of_counts_counts);
