@@ -64,6 +64,8 @@ static void friction_is_what_a_wheel_a_limit_or_a_circuit_gives(void) {
     v = robotino(0, 0, 0);
     v.wheel[0].motor_circuit = LACONIC_MOTOR_OPEN;
     TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
+    v.wheel[0].motor_circuit = -1; /* is no driven motor either; the check refuses it */
+    TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
     v = with_drive(robotino(0, 0, 0));
     v.drive.current_limit_A = 1;
     TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));

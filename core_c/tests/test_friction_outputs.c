@@ -50,6 +50,30 @@ static void a_wheel_that_spins_slips_along(void) {
     for (int i = 0; i < 3; i++) TEST_ASSERT_TRUE(out.friction.contact_state[i] == REAL(i == 1));
 }
 
+/* A contact at its limit slips; one that misses the limit's square by more than eight times the tolerance does not, as
+ * where the smooth law moves slowly. Of the border itself each digit counts. */
+static void a_contact_slips_within_eight_tolerances_of_its_limit(void) {
+    const laconic_input input = no_input();
+    for (int k = 0; k < 40; k++) {
+        laconic_plant plant = started(robotino(0.3, 1, 0), 1e-3, 0, 0, 0);
+        plant.state.zeta[1].value = 2;
+        plant.slip.normal_N[0] = REAL(30 + 0.7 * k);
+        const laconic_real limit = plant.friction.axle[0].friction_coefficient * plant.slip.normal_N[0];
+        const laconic_real border = limit * limit * (1 - 8 * LACONIC_RANK_TOLERANCE);
+        for (int n = -8; n <= 8; n++) {
+            const laconic_real grip = REAL(sqrt((double)border)) * (1 + REAL(n) * LACONIC_EPSILON / 2);
+            plant.slip.grip_N[0][0] = grip;
+            const laconic_outputs out = outputs_with(&plant, &input);
+            TEST_ASSERT_TRUE(out.friction.contact_state[0] == REAL(grip * grip >= border));
+        }
+        for (int half = 0; half < 2; half++) { /* half a tolerance to either side */
+            const double short_by = (half == 0 ? 7.5 : 8.5) * (double)LACONIC_RANK_TOLERANCE;
+            plant.slip.grip_N[0][0] = REAL((double)limit * sqrt(1 - short_by));
+            TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[0] == REAL(half == 0));
+        }
+    }
+}
+
 /* Constants of wheels that it has not are no numbers: nothing is computed of them. */
 static void what_lies_beyond_the_last_wheel_is_not_read(void) {
     const laconic_real nu[3] = {2, -1, REAL(0.7)};
@@ -370,6 +394,7 @@ int main(void) {
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
     RUN_TEST(a_contact_slips_across_by_its_own_drag);
     RUN_TEST(a_wheel_that_spins_slips_along);
+    RUN_TEST(a_contact_slips_within_eight_tolerances_of_its_limit);
     RUN_TEST(what_lies_beyond_the_last_wheel_is_not_read);
     RUN_TEST(the_reactions_move_the_body);
     RUN_TEST(a_brake_holds_its_wheel_against_motor_and_ground);

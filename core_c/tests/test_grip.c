@@ -174,6 +174,35 @@ static void the_tolerance_is_a_part_of_the_weight(void) {
     }
 }
 
+/* What is rounding is so to the last bit of the tolerance: a load, a reaction, and what is missing of one. */
+static void a_load_or_a_reaction_of_just_the_tolerance_is_rounding(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.5, 0.05);
+    const laconic_reactions rest = look_at(&s, no_input(), 0);
+    const laconic_real rounding = LACONIC_RANK_TOLERANCE * (s.model.mass_kg * REAL(GRAVITY));
+    laconic_reactions found = rest;
+    found.normal_N[1] = -rounding;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.lifting);
+    found.normal_N[1] = -rounding * (1 + LACONIC_EPSILON);
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 2);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+    found = rest;
+    found.normal_N[1] = -4 * rounding;
+    found.along_N[1] = rounding; /* of a wheel in the air */
+    found.no_slip_margin_N = -3 * rounding;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 3);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
+    found.along_N[1] = rounding * (1 + 4 * LACONIC_EPSILON);
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 4);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
+    found = rest;
+    found.normal_N[1] = 2 * rounding;
+    found.along_N[1] = 2 * rounding;
+    found.no_slip_margin_N = -rounding;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 5);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
+}
+
 /* The wheel in the air has no reaction that could slip, and the one beside it has all the friction that it needs. */
 static void a_wheel_at_its_limit_does_not_slip_since_another_one_lifts(void) {
     scene s = scene_of(with_motors(mecanum()), 0.5, 0.05);
@@ -236,6 +265,7 @@ int main(void) {
     RUN_TEST(a_wheel_that_lifts_without_a_reaction_does_not_slip);
     RUN_TEST(nan_counts_as_slip_and_as_lift);
     RUN_TEST(the_tolerance_is_a_part_of_the_weight);
+    RUN_TEST(a_load_or_a_reaction_of_just_the_tolerance_is_rounding);
     RUN_TEST(a_wheel_at_its_limit_does_not_slip_since_another_one_lifts);
     RUN_TEST(of_points_that_are_equally_bad_the_first_is_named);
     RUN_TEST(of_points_the_worse_is_named_by_its_number);
