@@ -45,11 +45,23 @@ static void the_solution_scales_with_the_rows(void) {
     }
 }
 
+/* Sweeps beyond the fourth go on to turn the last digits of such a row: their number is one of the bits'. */
+static void the_bits_are_those_of_twelve_sweeps(void) {
+    const laconic_real row[1][3] = {{EITHER(REAL(0.021), REAL(-0.539)), EITHER(REAL(0.528), REAL(-0.938)),
+                                     EITHER(REAL(0.073), REAL(-0.386))}};
+    const double expected[3] = {EITHER(0x1.2e48984769305p-4, -0x1.a255fep-2), EITHER(0x1.db045d0280b9dp+0, -0x1.6c01acp-1),
+                                EITHER(0x1.06b2e5dc8921p-2, -0x1.2b966p-2)};
+    laconic_real solver[1][3];
+    laconic_least_norm(solver, row, 1);
+    for (int c = 0; c < 3; c++) TEST_ASSERT_TRUE((double)solver[0][c] == expected[c]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_solution_is_exact_where_there_is_one_and_the_shortest);
     RUN_TEST(rows_of_zero_carry_nothing);
     RUN_TEST(rows_that_are_all_zero_carry_nothing_and_give_no_nan);
     RUN_TEST(the_solution_scales_with_the_rows);
+    RUN_TEST(the_bits_are_those_of_twelve_sweeps);
     return UNITY_END();
 }
