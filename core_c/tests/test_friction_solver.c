@@ -360,6 +360,68 @@ static void a_heavy_wheel_that_turns_slowly_is_not_at_rest(void) {
 }
 
 /* Of each wheel, also where nothing moves. */
+/* One wheel whose roller's axis and the direction across it are given, so that its rows have no rounded sines. */
+static problem one_exact_wheel(const double along[3], const double across[3], double inertia, double drag) {
+    problem p;
+    memset(&p, 0, sizeof p);
+    friction_wheel *w = &p.wheel[p.count++];
+    for (int k = 0; k < 3; k++) {
+        w->along[k] = REAL(along[k]);
+        w->across[k] = REAL(across[k]);
+    }
+    w->rim_along = 1;
+    w->inertia = REAL(inertia);
+    w->drag = REAL(drag);
+    laconic_friction_prepare(w);
+    p.load[0].grip = p.load[0].drive_limit = LACONIC_REAL_MAX;
+    return p;
+}
+
+/* Both are of the order of the tolerance after the third pass, and together above it. */
+static void residual_and_imbalance_are_within_the_tolerance_together(void) {
+    const double along[3] = {0, 1, 0.375}, across[3] = {-1, 0, -0.125};
+    problem p = one_exact_wheel(along, across, 0.125, 1);
+    friction_load *l = &p.load[0];
+    l->grip = REAL(0.875);
+    l->drive_slope = REAL(0.25);
+    l->drive_limit = REAL(0.5);
+    l->viscous = l->free_speed = p.speed[0] = REAL(0.125);
+    p.free[0] = p.nu[0] = REAL(-0.875);
+    p.free[1] = p.nu[1] = REAL(-0.5);
+    TEST_ASSERT_EQUAL_INT(4, solve(&p));
+}
+
+/* It slides; in single the argument comes to lie on the border itself, where slip outwards tells nothing yet. */
+static void on_the_border_of_its_grip_a_contact_sticks(void) {
+    const double along[3] = {-1, 0, -1}, across[3] = {0, -1, 0};
+    problem p = one_exact_wheel(along, across, 0.25, 1);
+    p.load[0].grip = REAL(0.125);
+    p.load[0].axle = REAL(0.25);
+    p.load[0].free_speed = p.speed[0] = REAL(-0.625);
+    p.free[1] = p.nu[1] = REAL(0.875);
+    TEST_ASSERT_EQUAL_INT(EITHER(2, 3), solve(&p));
+}
+
+/* A braked wheel in the air has all the energy of the free motion, the body what counts as rest, to the last bit. */
+static void rest_is_a_share_of_the_free_motion_to_the_last_bit(void) {
+    const double share = EITHER(1e-10, 1e-4);
+    const double along[3] = {1, 0, 0}, across[3] = {0, 1, 0};
+    for (int k = 0; k < 50; k++) {
+        for (int n = -8; n <= 8; n++) {
+            problem p = one_exact_wheel(along, across, 1, 1);
+            p.load[0].grip = 0;
+            p.load[0].axle = 100;
+            p.load[0].free_speed = p.speed[0] = REAL(1 + 0.07 * k);
+            const laconic_real energy = p.speed[0] * p.speed[0]; /* beside which the body's is lost */
+            const laconic_real rest = REAL(share) * REAL(share) * energy;
+            const laconic_real speed = REAL(sqrt((double)rest)) * (1 + REAL(n) * LACONIC_EPSILON / 2);
+            p.free[0] = p.nu[0] = speed;
+            TEST_ASSERT_GREATER_THAN(0, solve(&p));
+            TEST_ASSERT_TRUE(p.nu[0] == (speed * speed > rest ? speed : 0));
+        }
+    }
+}
+
 static void wheels_stand_where_nothing_moves(void) {
     problem p = one_wheel(1);
     put_wheel(&p, 0, 1, PI / 2, PI / 2, 1, 0.5);
@@ -435,6 +497,9 @@ int main(void) {
     RUN_TEST(speeds_of_hardly_any_share_of_the_free_motion_are_none);
     RUN_TEST(a_motion_next_to_the_least_number_s_root_is_none);
     RUN_TEST(a_heavy_wheel_that_turns_slowly_is_not_at_rest);
+    RUN_TEST(residual_and_imbalance_are_within_the_tolerance_together);
+    RUN_TEST(on_the_border_of_its_grip_a_contact_sticks);
+    RUN_TEST(rest_is_a_share_of_the_free_motion_to_the_last_bit);
     RUN_TEST(wheels_stand_where_nothing_moves);
     RUN_TEST(the_solution_of_a_slower_motion_is_as_much_slower_to_the_last_bit);
     RUN_TEST(what_is_prepared_again_stays_and_free_rollers_have_no_mass_across);
