@@ -422,6 +422,52 @@ static void rest_is_a_share_of_the_free_motion_to_the_last_bit(void) {
     }
 }
 
+/* A wheel in the air, pushed by its motor with just the least energy that is one. */
+static void the_least_energy_moves(void) {
+    const double along[3] = {1, 0, 0}, across[3] = {0, 1, 0};
+    problem p = one_exact_wheel(along, across, EITHER(0x1.357c299a88ea7p+2, 0x1.b7cdfap+0), 1);
+    p.load[0].grip = 0;
+    p.load[0].drive = EITHER(REAL(0x1p-470), REAL(0x1p-46));
+    const laconic_real energy = p.load[0].drive * p.load[0].drive / p.wheel[0].inertia;
+    const laconic_real tolerance = EITHER(REAL(1e-12), REAL(1e-5));
+    TEST_ASSERT_TRUE(energy == LACONIC_REAL_MIN / (tolerance * tolerance));
+    TEST_ASSERT_GREATER_THAN(0, solve(&p));
+    TEST_ASSERT_TRUE(p.speed[0] > 0);
+    p.load[0].drive *= 1 - LACONIC_EPSILON;
+    TEST_ASSERT_GREATER_THAN(0, solve(&p));
+    TEST_ASSERT_TRUE(p.speed[0] == 0);
+}
+
+/* Rollers that drag by so little that across them there is no slip by just the bound: the impulse there stays. */
+static void across_rollers_that_hardly_drag_an_impulse_stays(void) {
+    const double along[3] = {1, 0, 0}, across[3] = {0, 1, 0};
+    problem p = one_exact_wheel(along, across, 0.625, 0);
+    const laconic_real none = REAL(1e-30) * p.wheel[0].mobility, guess = REAL(sqrt((double)none));
+    for (int n = -8; n <= 8 && p.wheel[0].drag * p.wheel[0].drag != none; n++)
+        p.wheel[0].drag = guess * (1 + REAL(n) * LACONIC_EPSILON / 2);
+    laconic_friction_prepare(&p.wheel[0]);
+    TEST_ASSERT_TRUE(p.wheel[0].drag * p.wheel[0].drag == REAL(1e-30) * p.wheel[0].mobility);
+    p.load[0].grip = REAL(0.125);
+    p.free[0] = p.nu[0] = 2;
+    p.free[1] = p.nu[1] = 1;
+    p.impulse[0][1] = -(p.wheel[0].drag / p.wheel[0].mobility); /* so that it slips along alone */
+    TEST_ASSERT_GREATER_THAN(0, solve(&p));
+    TEST_ASSERT_TRUE(p.impulse[0][0] == REAL(0.125) && p.impulse[0][1] < 0);
+}
+
+/* Where grip over slip is as stiff as the penalty, the penalty's law is taken, which goes on from the impulse. */
+static void a_slip_that_is_as_stiff_as_the_penalty_has_these_bits(void) {
+    const double along[3] = {1, 0, 0}, across[3] = {0, 1, 0}, penalty = EITHER(1e5, 300);
+    problem p = one_exact_wheel(along, across, 0.5, 1);
+    TEST_ASSERT_TRUE(p.wheel[0].mobility == 4);
+    p.load[0].grip = REAL(ldexp(4 * penalty, -24));
+    p.impulse[0][1] = p.load[0].grip / 8;
+    p.free[0] = p.nu[0] = REAL(4 * ldexp(4 * penalty + 1, -24));
+    p.free[1] = p.nu[1] = -3 * p.impulse[0][1];
+    TEST_ASSERT_GREATER_THAN(0, solve(&p));
+    TEST_ASSERT_TRUE((double)p.impulse[0][1] == EITHER(-0x1.1b6830535213ep-8, -0x1.b2b5c6p-17));
+}
+
 static void wheels_stand_where_nothing_moves(void) {
     problem p = one_wheel(1);
     put_wheel(&p, 0, 1, PI / 2, PI / 2, 1, 0.5);
@@ -500,6 +546,9 @@ int main(void) {
     RUN_TEST(residual_and_imbalance_are_within_the_tolerance_together);
     RUN_TEST(on_the_border_of_its_grip_a_contact_sticks);
     RUN_TEST(rest_is_a_share_of_the_free_motion_to_the_last_bit);
+    RUN_TEST(the_least_energy_moves);
+    RUN_TEST(across_rollers_that_hardly_drag_an_impulse_stays);
+    RUN_TEST(a_slip_that_is_as_stiff_as_the_penalty_has_these_bits);
     RUN_TEST(wheels_stand_where_nothing_moves);
     RUN_TEST(the_solution_of_a_slower_motion_is_as_much_slower_to_the_last_bit);
     RUN_TEST(what_is_prepared_again_stays_and_free_rollers_have_no_mass_across);
