@@ -468,6 +468,42 @@ static void a_slip_that_is_as_stiff_as_the_penalty_has_these_bits(void) {
     TEST_ASSERT_TRUE((double)p.impulse[0][1] == EITHER(-0x1.1b6830535213ep-8, -0x1.b2b5c6p-17));
 }
 
+/* After the last pass residual and imbalance are the tolerance, to the last bit: more than that would take more. */
+static void a_residual_of_just_the_tolerance_is_solved(void) {
+    const double along[3] = {1, 0, -0.125}, across[3] = {0, 1, -0.75};
+    problem p = one_exact_wheel(along, across, 1, 0);
+    friction_load *l = &p.load[0];
+    l->grip = p.impulse[0][1] = REAL(0.75);
+    l->axle = REAL(0.1875);
+    l->drive_slope = REAL(0.25);
+    l->drive_limit = REAL(0.5);
+    l->viscous = REAL(0.125);
+    l->free_speed = p.speed[0] = REAL(-0.875);
+    p.free[0] = p.nu[0] = REAL(0.125);
+    p.free[1] = p.nu[1] = EITHER(REAL(-0x1.22d81eb021127p-2), REAL(-0x1.aef388p-1));
+    p.free[2] = p.nu[2] = REAL(-0.5);
+    TEST_ASSERT_EQUAL_INT(EITHER(6, 4), solve(&p));
+}
+
+/* A pass leaves a tenth of the residual, to the last bit: it was worth it, and exact passes go on. */
+static void a_pass_that_leaves_just_a_tenth_is_worth_it(void) {
+    const double along[3] = {EITHER(-1, 0), EITHER(0, 1), -0.625};
+    const double across[3] = {EITHER(0, -1), EITHER(-1, 0), EITHER(-1, 0.5)};
+    problem p = one_exact_wheel(along, across, EITHER(1, 0.5), 0);
+    friction_load *l = &p.load[0];
+    l->grip = REAL(EITHER(0.375, 0.5));
+    l->axle = REAL(EITHER(0.25, 0.1875));
+    l->drive_slope = REAL(EITHER(0, 0.25));
+    if (IN_DOUBLE) l->drive_limit = REAL(0.5);
+    l->viscous = REAL(0.125);
+    l->free_speed = p.speed[0] = REAL(EITHER(1, -0.125));
+    p.impulse[0][1] = REAL(EITHER(-0.375, 0));
+    p.free[0] = p.nu[0] = REAL(EITHER(0.75, -1));
+    p.free[1] = p.nu[1] = REAL(EITHER(0.25, 1));
+    p.free[2] = p.nu[2] = EITHER(REAL(-0x1.1b405ea5dd78p-1), REAL(0x1.a263c8p-2));
+    TEST_ASSERT_EQUAL_INT(EITHER(6, 4), solve(&p));
+}
+
 static void wheels_stand_where_nothing_moves(void) {
     problem p = one_wheel(1);
     put_wheel(&p, 0, 1, PI / 2, PI / 2, 1, 0.5);
@@ -549,6 +585,8 @@ int main(void) {
     RUN_TEST(the_least_energy_moves);
     RUN_TEST(across_rollers_that_hardly_drag_an_impulse_stays);
     RUN_TEST(a_slip_that_is_as_stiff_as_the_penalty_has_these_bits);
+    RUN_TEST(a_residual_of_just_the_tolerance_is_solved);
+    RUN_TEST(a_pass_that_leaves_just_a_tenth_is_worth_it);
     RUN_TEST(wheels_stand_where_nothing_moves);
     RUN_TEST(the_solution_of_a_slower_motion_is_as_much_slower_to_the_last_bit);
     RUN_TEST(what_is_prepared_again_stays_and_free_rollers_have_no_mass_across);
