@@ -188,6 +188,26 @@ static void a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refuse
             }
 }
 
+/* To the last bit: a body that hardly grips anything and goes along, or in single also across while it turns. */
+static void the_bound_of_metres_and_radians_is_beyond_what_a_step_may_add(void) {
+    const laconic_input coasting = no_input();
+    laconic_vehicle v = bare_body();
+    v.mass_kg = 16;
+    v.yaw_inertia_kgm2 = 1;
+    v.wheel_radius_m = REAL(0.0625);
+    v.wheel_inertia_kgm2 = REAL(1.0 / 256);
+    v.ground.friction_coefficient = REAL(EITHER(1e-250, 1e-30));
+    for (int i = 0; i < 3; i++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.125 * (i - 1), i == 1 ? 0.125 : 0, i, 1.5);
+    for (int beyond = 0; beyond < 2; beyond++) {
+        const double along = (double)LARGEST_YAW_CHANGE_RAD / 64 * (beyond ? 1 : 1 - (double)LACONIC_EPSILON);
+        laconic_plant plant = started(v, 1024, along, 0, 0);
+        ASSERT_STATUS(beyond ? LACONIC_OVERFLOW : LACONIC_OK, laconic_plant_run(&plant, &coasting, 1, &why));
+        if (IN_DOUBLE) continue;
+        plant = started(v, 1048576, beyond ? 0x1.d09a98p+22 : 0x1.d09a96p+22, 0x1.908p+15, 0x1.61ffdp-14);
+        ASSERT_STATUS(beyond ? LACONIC_OVERFLOW : LACONIC_OK, laconic_plant_run(&plant, &coasting, 1, &why));
+    }
+}
+
 /* A push by a thousandth of the largest speed. */
 static void a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused(void) {
     const double step_s = EITHER(1e-80, 1e-12);
@@ -239,6 +259,7 @@ int main(void) {
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
     RUN_TEST(a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow);
     RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
+    RUN_TEST(the_bound_of_metres_and_radians_is_beyond_what_a_step_may_add);
     RUN_TEST(a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused);
     RUN_TEST(without_a_winding_resistance_a_motor_takes_what_its_voltage_gives);
     RUN_TEST(with_one_it_takes_what_its_current_gives_whether_its_bearings_rub_or_not);
