@@ -170,6 +170,18 @@ static void a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow(voi
     ASSERT_NEAR(EITHER(1e-12, 1e-5) * fabs(way[0]), way[0], way[1]);
 }
 
+/* Uphill, where it comes to rest: what grows has no square, so that nothing grows, and the mean velocity is taken. */
+static void a_motion_too_slow_to_be_squared_goes_by_its_mean(void) {
+    const laconic_input coasting = no_input();
+    const double speed = EITHER(1e-180, 1e-27), step_s = 0.25;
+    laconic_vehicle v = robotino(0.8, 0.5, 0);
+    v.ground.slope_rad = REAL(0.1);
+    laconic_plant plant = started(v, step_s, speed, 0, 0);
+    run(&plant, &coasting, 1);
+    TEST_ASSERT_TRUE(plant.state.zeta[0].value == 0);
+    ASSERT_NEAR(0.01, 1, (double)plant.state.x_m.value / (0.5 * step_s * 0.04 * speed));
+}
+
 /* Metres and radians together have one bound: what one step of so fast a body adds must fit its heading. */
 static void a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused(void) {
     const laconic_input coasting = no_input();
@@ -258,6 +270,7 @@ int main(void) {
     RUN_TEST(a_body_at_the_end_of_the_range_of_speeds_is_stepped);
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
     RUN_TEST(a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow);
+    RUN_TEST(a_motion_too_slow_to_be_squared_goes_by_its_mean);
     RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
     RUN_TEST(the_bound_of_metres_and_radians_is_beyond_what_a_step_may_add);
     RUN_TEST(a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused);
