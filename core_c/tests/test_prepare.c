@@ -360,6 +360,32 @@ static void numbers_that_leave_the_range_together_are_refused_and_do_not_cancel(
     }
 }
 
+/* Sums that fill it: their order is one of the bits'. The largest number that is taken, and the next one. */
+static void the_end_of_the_range_is_there_to_the_last_bit(void) {
+    for (int k = 0; k < 2; k++) {
+        laconic_vehicle v = bare_body();
+        laconic_model model;
+        v.mass_kg = v.wheel_radius_m = v.yaw_inertia_kgm2 = 1;
+        v.wheel_inertia_kgm2 = 0;
+        laconic_real *const last = k == 0 ? &v.com_x_m : &v.motor_gain_Nm_per_V;
+        if (k == 0) { /* both coordinates and the square of 1/Λ */
+            v.com_y_m = EITHER(REAL(0x1.bffffffffffffp+509), REAL(0x1.bffffep+61));
+            v.yaw_inertia_kgm2 = EITHER(REAL(0x1.7d05f417d05f6p-511), REAL(0x1.7d05f6p-63));
+            *last = EITHER(REAL(0x1.c00000000000dp+508), REAL(0x1.bffffap+60));
+        } else { /* inertia, damping and gain of a wheel that is large, so that it turns slowly */
+            add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.0, 0.0, 0.0, PI / 2);
+            v.wheel[0].own_radius_m = EITHER(REAL(1e66), REAL(1e8));
+            v.mass_kg = EITHER(REAL(1.25), REAL(0.5));
+            v.wheel_inertia_kgm2 = EITHER(REAL(0x1.b7fffffffffffp+509), REAL(0x1.6ffffep+61));
+            v.motor_damping_Nms = EITHER(REAL(0x1.3ffffffffffffp+508), REAL(0x1.3ffffep+60));
+            *last = EITHER(REAL(0x1.9238e38e38e37p+510), REAL(0x1.faaaa8p+61));
+        }
+        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
+        *last += *last * (LACONIC_EPSILON / 2);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    }
+}
+
 /* The radius of gyration of this body is 0 in the scalar type, so a wheel under its centre has the lever 0/0. */
 static void a_body_without_any_extent_is_refused_and_never_gives_nan(void) {
     laconic_vehicle v = caster();
@@ -440,6 +466,7 @@ int main(void) {
     RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan);
     RUN_TEST(a_body_that_turns_alone_is_refused_by_both_of_its_yaw_scales);
     RUN_TEST(numbers_that_leave_the_range_together_are_refused_and_do_not_cancel);
+    RUN_TEST(the_end_of_the_range_is_there_to_the_last_bit);
     RUN_TEST(a_body_without_any_extent_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);
