@@ -442,8 +442,8 @@ static void the_least_energy_moves(void) {
 static void across_rollers_that_hardly_drag_an_impulse_stays(void) {
     const double along[3] = {1, 0, 0}, across[3] = {0, 1, 0};
     problem p = one_exact_wheel(along, across, 0.625, 0);
-    const laconic_real none = REAL(1e-30) * p.wheel[0].mobility, guess = REAL(sqrt((double)none));
-    for (int n = -8; n <= 8 && p.wheel[0].drag * p.wheel[0].drag != none; n++)
+    const laconic_real bound = REAL(1e-30) * p.wheel[0].mobility, guess = REAL(sqrt((double)bound));
+    for (int n = -8; n <= 8 && p.wheel[0].drag * p.wheel[0].drag != bound; n++)
         p.wheel[0].drag = guess * (1 + REAL(n) * LACONIC_EPSILON / 2);
     laconic_friction_prepare(&p.wheel[0]);
     TEST_ASSERT_TRUE(p.wheel[0].drag * p.wheel[0].drag == REAL(1e-30) * p.wheel[0].mobility);

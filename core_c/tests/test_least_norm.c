@@ -47,9 +47,10 @@ static void the_solution_scales_with_the_rows(void) {
 
 /* Sweeps beyond the fourth go on to turn the last digits of such a row: their number is one of the bits'. */
 static void the_bits_are_those_of_twelve_sweeps(void) {
-    const laconic_real row[1][3] = {{EITHER(REAL(0.021), REAL(-0.539)), EITHER(REAL(0.528), REAL(-0.938)),
-                                     EITHER(REAL(0.073), REAL(-0.386))}};
-    const double expected[3] = {EITHER(0x1.2e48984769305p-4, -0x1.a255fep-2), EITHER(0x1.db045d0280b9dp+0, -0x1.6c01acp-1),
+    const laconic_real row[1][3] = {
+        {EITHER(REAL(0.021), REAL(-0.539)), EITHER(REAL(0.528), REAL(-0.938)), EITHER(REAL(0.073), REAL(-0.386))}};
+    const double expected[3] = {EITHER(0x1.2e48984769305p-4, -0x1.a255fep-2),
+                                EITHER(0x1.db045d0280b9dp+0, -0x1.6c01acp-1),
                                 EITHER(0x1.06b2e5dc8921p-2, -0x1.2b966p-2)};
     laconic_real solver[1][3];
     laconic_least_norm(solver, row, 1);

@@ -105,7 +105,7 @@ static void axes_are_the_same_without_damping(void) {
     }
 }
 
-/* Rollers on wheels so large that squares of their rows have few digits, or none: the shares of damping that is the same
+/* Rollers on wheels so large that squares of their rows have few digits: the shares of damping that is the same
  * for all are 1, and so are those of none. */
 static void axes_are_the_same_without_damping_where_rows_hardly_are_numbers(void) {
     laconic_vehicle v = three_wheels();
@@ -122,8 +122,8 @@ static void axes_are_the_same_without_damping_where_rows_hardly_are_numbers(void
     TEST_ASSERT_EQUAL_MEMORY(with.wheel_of_zeta, without.wheel_of_zeta, sizeof with.wheel_of_zeta);
 }
 
-/* Of wheels without inertia the columns stay as they were rotated. For some vehicles such small rotations would go on for
- * ever; for this one they end, and tell the bound. */
+/* Of wheels without inertia the columns stay as they were rotated. For some vehicles such small rotations would go on
+ * for ever; for this one they end, and tell the bound. */
 static void columns_are_rotated_until_a_quarter_of_the_last_digit_is_left(void) {
     laconic_vehicle v = bare_body();
     v.mass_kg = 9;
@@ -222,7 +222,7 @@ static void fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip(voi
     ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
 }
 
-/* Axle lines that meet so far away that the one motion turns by just the tolerance; the next smaller number is beyond. */
+/* Axle lines that meet so far away that the one motion turns by just the tolerance; the next number is beyond. */
 static void axle_lines_that_meet_at_just_the_tolerance_leave_a_rotation(void) {
     laconic_vehicle v = bare_body();
     laconic_model model;
@@ -386,6 +386,33 @@ static void the_end_of_the_range_is_there_to_the_last_bit(void) {
     }
 }
 
+/* Squares beside which their root still counts: of w, and of a rotation that damping and inertia fill, too. */
+static void in_single_roots_beside_squares_count_at_the_end_of_the_range(void) {
+    const laconic_real known[2][2] = {{REAL(0x1.249262p-42), REAL(0x1.666656p+63)},
+                                      {REAL(0x1.249266p-42), REAL(0x1.66665ap+63)}};
+    for (int k = 0; k < 3 && !IN_DOUBLE; k++) { /* in double they are less than the last digit */
+        laconic_vehicle v = bare_body();
+        laconic_model model;
+        v.mass_kg = v.wheel_radius_m = 1;
+        laconic_real *const last = k < 2 ? &v.com_x_m : &v.motor_gain_Nm_per_V;
+        if (k < 2) {
+            v.yaw_inertia_kgm2 = known[k][0];
+            v.com_y_m = REAL(0x1.333332p+62);
+            *last = known[k][1];
+        } else {
+            v.yaw_inertia_kgm2 = REAL(0x1.c71c76p-124);
+            v.wheel_inertia_kgm2 = REAL(0x1.47ae14p-7);
+            v.motor_damping_Nms = REAL(0x1.51eb84p+55);
+            add_wheel(&v, LACONIC_WHEEL_FIXED, 0x1.b8874p-39, 0.0, 0.0, 0.0);
+            add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0x1.b8874p-39, PI / 2, 0.0);
+            *last = REAL(0x1.195c2p+61);
+        }
+        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
+        *last *= 1 + LACONIC_EPSILON;
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    }
+}
+
 /* The radius of gyration of this body is 0 in the scalar type, so a wheel under its centre has the lever 0/0. */
 static void a_body_without_any_extent_is_refused_and_never_gives_nan(void) {
     laconic_vehicle v = caster();
@@ -467,6 +494,7 @@ int main(void) {
     RUN_TEST(a_body_that_turns_alone_is_refused_by_both_of_its_yaw_scales);
     RUN_TEST(numbers_that_leave_the_range_together_are_refused_and_do_not_cancel);
     RUN_TEST(the_end_of_the_range_is_there_to_the_last_bit);
+    RUN_TEST(in_single_roots_beside_squares_count_at_the_end_of_the_range);
     RUN_TEST(a_body_without_any_extent_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);

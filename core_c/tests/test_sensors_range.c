@@ -65,20 +65,17 @@ static void of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_p
     }
 }
 
-/* Half a metre from the axis, and where both are as far or as large but for the last digits: the first coordinate of two
- * that are as far, and of two parts that are as large the second. */
+/* Half a metre from the axis, and where both are as far or as large but for the last digits: the first coordinate of
+ * two that are as far, and of two parts that are as large the second. */
 static void ties_and_small_differences_are_told_apart(void) {
     const double next = 2e5 + EITHER(3e-11, 0.02); /* the next number */
     const struct {
         double yaw_rad_per_s, x_m, y_m;
         laconic_sensor_field far;
         int sign; /* of the part that is told */
-    } places[] = {{1e8, 0, 0.5, LACONIC_SENSOR_FIELD_IMU_Y, -1},
-                  {1e8, 0.5, 0, LACONIC_SENSOR_FIELD_IMU_X, -1},
-                  {1e8, 0.5, -0.25, LACONIC_SENSOR_FIELD_IMU_X, -1},
-                  {1e8, 2, 2, LACONIC_SENSOR_FIELD_IMU_X, -1},
-                  {1e8, 2, -2, LACONIC_SENSOR_FIELD_IMU_X, 1},
-                  {1e5, next, -2e5, LACONIC_SENSOR_FIELD_IMU_X, -1},
+    } places[] = {{1e8, 0, 0.5, LACONIC_SENSOR_FIELD_IMU_Y, -1},     {1e8, 0.5, 0, LACONIC_SENSOR_FIELD_IMU_X, -1},
+                  {1e8, 0.5, -0.25, LACONIC_SENSOR_FIELD_IMU_X, -1}, {1e8, 2, 2, LACONIC_SENSOR_FIELD_IMU_X, -1},
+                  {1e8, 2, -2, LACONIC_SENSOR_FIELD_IMU_X, 1},       {1e5, next, -2e5, LACONIC_SENSOR_FIELD_IMU_X, -1},
                   {1e5, 2e5, -next, LACONIC_SENSOR_FIELD_IMU_Y, 1}};
     laconic_vehicle v = bare_body();
     v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = 1;
