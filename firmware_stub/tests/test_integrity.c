@@ -332,6 +332,26 @@ static void test_a_frame_for_others_and_one_that_commits_nothing_change_no_sum(v
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+/* Only before a frame that loads is it compared: what changes and changes back meanwhile leaves nothing wrong. */
+static void test_what_was_loaded_is_compared_before_frames_that_load_alone(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_open(&on));
+    for (uint32_t k = 0; k < 0x800U + LACONIC_NODE_ID_STRIDE; k++) {
+        const bool extended = k < LACONIC_NODE_ID_STRIDE; /* the node's numbers, but in frames of another kind */
+        const uint32_t id = extended ? LACONIC_WIRE_ID_BASE + k : k - LACONIC_NODE_ID_STRIDE;
+        const laconic_frame frame = {.id = id, .length = 8, .extended = extended};
+        const uint32_t offset = id - LACONIC_WIRE_ID_BASE;
+        const bool loads = offset == LACONIC_WIRE_PARAMETER || offset == LACONIC_WIRE_COMMIT ||
+                           offset == LACONIC_WIRE_CONTROL || offset == LACONIC_WIRE_OPEN;
+        if (loads && !extended) continue;
+        on.node.loader.parameters.vehicle.mass_kg = 5;
+        bench_frame(&on, &frame);
+        on.node.loader.parameters.vehicle.mass_kg = 0;
+        TEST_ASSERT_EQUAL(0, on.node.loader.status);
+    }
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_sound_node_moves_as_one_that_is_not_watched);
@@ -357,5 +377,6 @@ int main(void) {
     RUN_TEST(test_a_new_session_forgets_what_was_loaded_and_its_sum);
     RUN_TEST(test_a_node_whose_queue_is_not_checked_sends_as_ever);
     RUN_TEST(test_a_frame_for_others_and_one_that_commits_nothing_change_no_sum);
+    RUN_TEST(test_what_was_loaded_is_compared_before_frames_that_load_alone);
     return UNITY_END();
 }

@@ -146,6 +146,21 @@ static void test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range(void)
     TEST_ASSERT_EQUAL_UINT16(3, on.node.loader.frame_count);
 }
 
+/* Without any other check, too: the configuration is always compared. */
+static void test_a_configuration_that_was_wrong_is_sound_again_when_no_check_is_chosen(void) {
+    laconic_frame told;
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_SUM);
+    const laconic_integrity_limits limits = on.integrity.limits;
+    laconic_integrity_begin(&on.integrity, &on.node, &on.config, &limits, 0);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.config.nonce_seed ^= 1U;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_CONFIGURATION, on.integrity.broken);
+    while (bench_next(&on, &told)) TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+    TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_RESET));
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_commit_that_is_refused_makes_no_vehicle);
@@ -157,5 +172,6 @@ int main(void) {
     RUN_TEST(test_a_frame_that_loads_nothing_hides_no_change_of_what_was_loaded);
     RUN_TEST(test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one);
     RUN_TEST(test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range);
+    RUN_TEST(test_a_configuration_that_was_wrong_is_sound_again_when_no_check_is_chosen);
     return UNITY_END();
 }

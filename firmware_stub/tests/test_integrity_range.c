@@ -232,6 +232,24 @@ static void test_a_vehicle_of_the_most_wheels_is_in_range(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+/* As it is when its highest bit changes, and so does that of a number behind the wheels. */
+static void test_a_count_of_wheels_below_none_has_no_voltage_out_of_range(void) {
+    in_free_run();
+    TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
+    on.node.plant.model.wheel_count = INT32_MIN + on.node.plant.model.wheel_count;
+    on.node.input[0].voltage_V[9] = 1000;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+}
+
+/* Nothing is within it; 0 alone means none. */
+static void test_a_limit_below_0_is_one(void) {
+    in_free_run();
+    on.integrity.limits.distance_m = -1;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_RANGE, on.integrity.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_what_no_motion_has_is_out_of_range);
@@ -248,5 +266,7 @@ int main(void) {
     RUN_TEST(test_a_limit_of_0_is_none);
     RUN_TEST(test_two_numbers_out_of_range_are_noticed_as_one_is);
     RUN_TEST(test_a_vehicle_of_the_most_wheels_is_in_range);
+    RUN_TEST(test_a_count_of_wheels_below_none_has_no_voltage_out_of_range);
+    RUN_TEST(test_a_limit_below_0_is_one);
     return UNITY_END();
 }
