@@ -415,6 +415,49 @@ static void angles_of_all_wheels_come_in_as_many_groups_as_they_need(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
 }
 
+/* One of two frames of each kind is fetched; then a selection without sensors, and a step. */
+static void frames_that_wait_go_on_where_they_were_though_no_sensor_is_selected_now(void) {
+    laconic_sensor_settings with = settings();
+    with.encoder[3] = (laconic_encoder_settings){256, 3};
+    bench_load(4);
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_sensors_start(&node.sensors, &with, &node.plant, NULL));
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_ENCODER, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    TEST_ASSERT_EQUAL_INT(0, data[1] >> 5);
+    node.pending &= ~BIT(LACONIC_WIRE_WHEEL_ANGLE);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
+    TEST_ASSERT_EQUAL_INT(1, data[1] >> 4);
+    node.pending |= BIT(LACONIC_WIRE_WHEEL_ANGLE);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_select(LACONIC_NODE_SEND_NU, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    TEST_ASSERT_EQUAL_INT(1, data[1] >> 5);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
+    TEST_ASSERT_EQUAL_INT(3, data[1] >> 4);
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ENCODER, data));
+}
+
+/* The bit of the one in `send` is that of the other in RAW_OUTPUT. */
+static void an_imus_frame_and_raw_counts_are_sent_together(void) {
+    load(settings());
+    bench_select(LACONIC_NODE_SEND_IMU, LACONIC_RAW_ENCODER, 0);
+    bench_start_lockstep();
+    step(2000);
+    TEST_ASSERT_TRUE(node.raw_output.number[1] == readings().encoder_count[1]);
+    TEST_ASSERT_TRUE(node.raw_output.number[1] > 0);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_IMU, data));
+}
+
+/* Not even behind the last wheel. */
+static void without_encoders_none_is_next(void) {
+    for (int32_t wheel = 0; wheel <= LACONIC_MAX_WHEELS; wheel++)
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_MAX_WHEELS, laconic_node_encoder_from(&node, wheel));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_setting_has_its_number_on_the_wire);
@@ -440,5 +483,8 @@ int main(void) {
     RUN_TEST(any_setting_but_0_gives_the_vehicle_sensors);
     RUN_TEST(angles_that_were_not_selected_are_not_sent);
     RUN_TEST(angles_of_all_wheels_come_in_as_many_groups_as_they_need);
+    RUN_TEST(frames_that_wait_go_on_where_they_were_though_no_sensor_is_selected_now);
+    RUN_TEST(an_imus_frame_and_raw_counts_are_sent_together);
+    RUN_TEST(without_encoders_none_is_next);
     return UNITY_END();
 }
