@@ -411,6 +411,25 @@ static void test_the_wire_numbers_each_field_as_its_row_does(void) {
 #undef COMPARED
 }
 
+/* What is loaded is all that there can be: nothing is missing for the wheel or support that is one too many. */
+static void a_count_beyond_the_largest_is_for_the_core_to_refuse(void) {
+    send_cart_without(0, 0);
+    for (uint8_t wheel = 3; wheel <= LACONIC_MAX_WHEELS; wheel++) {
+        send(0, LACONIC_FIELD_WHEEL_KIND, wheel, LACONIC_WHEEL_FIXED);
+        send_real(LACONIC_FIELD_WHEEL_X, wheel, wheel);
+        send_real(LACONIC_FIELD_WHEEL_Y, wheel, 0);
+        send_real(LACONIC_FIELD_AXLE, wheel, 0);
+    }
+    send(0, LACONIC_FIELD_WHEEL_COUNT, 0, LACONIC_MAX_WHEELS + 1);
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+    for (uint8_t support = 1; support <= LACONIC_MAX_SUPPORTS; support++) {
+        send_real(LACONIC_FIELD_SUPPORT_X, support, support);
+        send_real(LACONIC_FIELD_SUPPORT_Y, support, 0);
+    }
+    send(0, LACONIC_FIELD_SUPPORT_COUNT, 0, LACONIC_MAX_SUPPORTS + 1);
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_the_wire_numbers_each_field_as_its_row_does);
@@ -445,5 +464,6 @@ int main(void) {
     RUN_TEST(a_check_that_passes_names_nothing);
     RUN_TEST(a_check_names_what_a_frame_was_refused_for);
     RUN_TEST(a_number_that_no_field_has_is_unknown);
+    RUN_TEST(a_count_beyond_the_largest_is_for_the_core_to_refuse);
     return UNITY_END();
 }
