@@ -398,6 +398,12 @@ static void drives_and_encoders_are_of_wheels_that_are_there(void) {
     TEST_ASSERT_EQUAL_UINT8(refused, laconic_node_commit(&node, data).status);
 }
 
+/* So a rig hears of it first, whatever else is wrong with the vehicle. */
+static void a_method_that_is_none_is_refused_before_all_else(void) {
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_METHOD_UNKNOWN, commit_puck(-1, 100));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_METHOD, data[4]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_rate_takes_a_whole_number_of_steps_up_to_what_a_tick_may_take);
@@ -427,5 +433,6 @@ int main(void) {
     RUN_TEST(a_sync_asks_for_a_million_steps_at_most_and_for_one_of_sampled_inputs);
     RUN_TEST(an_identity_names_the_methods_that_are_there);
     RUN_TEST(drives_and_encoders_are_of_wheels_that_are_there);
+    RUN_TEST(a_method_that_is_none_is_refused_before_all_else);
     return UNITY_END();
 }

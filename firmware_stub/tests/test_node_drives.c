@@ -387,6 +387,15 @@ static void a_step_that_is_refused_under_sensors_is_a_fault_too(void) {
     TEST_ASSERT_EQUAL_UINT64(2, node.sensors.newest);
 }
 
+/* Of all steps this one alone has a rate that is off by exactly the ten-thousandth, and in single precision alone. */
+static void a_rate_at_the_very_edge_of_its_tolerance_is_refused(void) {
+    if (sizeof(laconic_real) == 8) return;
+    load(REAL(0.00026408766279928386));
+    const laconic_real rate_Hz = 1 / node.plant.integrator.step_s, slack = REAL(1e-4);
+    TEST_ASSERT_TRUE(rate_Hz - 3787 == -slack * rate_Hz);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, start());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -416,5 +425,6 @@ int main(void) {
     RUN_TEST(a_protocol_may_fill_its_room);
     RUN_TEST(raw_numbers_alone_make_the_node_speak_while_drives_play);
     RUN_TEST(a_step_that_is_refused_under_sensors_is_a_fault_too);
+    RUN_TEST(a_rate_at_the_very_edge_of_its_tolerance_is_refused);
     return UNITY_END();
 }
