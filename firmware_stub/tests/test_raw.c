@@ -183,6 +183,31 @@ static void reading_moves_nothing_and_each_torque_is_its_wheels(void) {
     TEST_ASSERT_EQUAL_MEMORY(held.axle_torque_Nm, out.number + 3, 4 * sizeof(laconic_real));
 }
 
+/* No byte behind the numbers is read, which the sanitizers watch. */
+static void the_last_bytes_of_the_most_numbers_are_given_alone(void) {
+    static laconic_raw_output out;
+    uint8_t bytes[60];
+    memset(&out, 0xEE, sizeof out);
+    memset(bytes, 0x5A, sizeof bytes);
+    out.size = sizeof out.number;
+    out.position = sizeof out.number - 4;
+    TEST_ASSERT_FALSE(laconic_raw_give(&out, bytes, sizeof bytes));
+    TEST_ASSERT_TRUE(bytes[3] == 0xEE && bytes[4] == 0 && bytes[59] == 0 && out.position == sizeof out.number);
+}
+
+/* A frame without bytes has come all the same; and bytes have, though the segments are back at the first. */
+static void whether_numbers_have_come_is_told_by_their_bytes(void) {
+    const uint8_t bytes[sizeof(laconic_real)] = {0};
+    raw.take = LACONIC_RAW_VOLTAGE;
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 2, 0, 15, bytes, 0));
+    TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, 1));
+    laconic_raw_restart(&raw);
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 2, 0, 1, bytes, 1));
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 2, 1, 1, bytes, 1));
+    TEST_ASSERT_TRUE(raw.segment == 0 && raw.position == 0);
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, 2));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_input_has_its_position_in_the_stream);
@@ -201,5 +226,7 @@ int main(void) {
     RUN_TEST(a_segment_that_comes_again_breaks_the_stream);
     RUN_TEST(more_frames_than_the_rig_has_sent_are_not_whole);
     RUN_TEST(reading_moves_nothing_and_each_torque_is_its_wheels);
+    RUN_TEST(the_last_bytes_of_the_most_numbers_are_given_alone);
+    RUN_TEST(whether_numbers_have_come_is_told_by_their_bytes);
     return UNITY_END();
 }
