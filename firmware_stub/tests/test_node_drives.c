@@ -396,6 +396,18 @@ static void a_rate_at_the_very_edge_of_its_tolerance_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, start());
 }
 
+/* As a bit of the count that changes would make it. */
+static void a_count_of_drives_below_none_is_none(void) {
+    uint8_t data[LACONIC_FRAME_BYTES] = {0, 0, LACONIC_WIRE_FIELD_DRIVE_FAULTS, 1, 4};
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_order_drive(&node, data));
+    node.drives.drive[1].unheard = true;
+    node.drives.count = INT32_MIN + node.drives.count;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, laconic_node_order_drive(&node, data));
+    laconic_node_pack(&node, LACONIC_WIRE_HEARTBEAT, data);
+    TEST_ASSERT_EQUAL_HEX8(0, data[7] & 0x80U);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -426,5 +438,6 @@ int main(void) {
     RUN_TEST(raw_numbers_alone_make_the_node_speak_while_drives_play);
     RUN_TEST(a_step_that_is_refused_under_sensors_is_a_fault_too);
     RUN_TEST(a_rate_at_the_very_edge_of_its_tolerance_is_refused);
+    RUN_TEST(a_count_of_drives_below_none_is_none);
     return UNITY_END();
 }

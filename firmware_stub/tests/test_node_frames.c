@@ -244,6 +244,23 @@ static void each_encoders_frame_tells_its_own_counts(void) {
     }
 }
 
+/* As a bit of the count that changes would make it: no voltage is taken, and nothing of wheels is sent. */
+static void a_count_of_wheels_below_none_is_none(void) {
+    load();
+    bench_select(LACONIC_NODE_SEND_WHEEL_SPEED | LACONIC_NODE_SEND_WHEEL_ANGLE, LACONIC_RAW_ENCODER, 0x10);
+    TEST_ASSERT_EQUAL_HEX8(LACONIC_RAW_ENCODER | LACONIC_RAW_HELD_TORQUE, node.raw_output.send);
+    bench_start_lockstep();
+    node.plant.model.wheel_count = INT32_MIN + node.plant.model.wheel_count;
+    bench_voltage(0, 500, 0);
+    memset(data, 1, sizeof data);
+    data[3] = 0;
+    bench_send(LACONIC_WIRE_VOLTAGE_FD, data);
+    for (int k = 0; k < LACONIC_MAX_WHEELS; k++) TEST_ASSERT_TRUE(node.input[0].voltage_V[k] == 0);
+    laconic_node_publish(&node);
+    TEST_ASSERT_EQUAL_HEX32(0, node.pending);
+    TEST_ASSERT_EQUAL_UINT16(0, node.raw_output.size);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_frame_that_waits_goes_on_waiting_when_it_is_due_again);
@@ -260,5 +277,6 @@ int main(void) {
     RUN_TEST(an_encoder_that_falls_away_takes_no_other_frame_along);
     RUN_TEST(a_frame_that_is_none_of_the_nodes_is_so_for_one_reason_or_for_two);
     RUN_TEST(each_encoders_frame_tells_its_own_counts);
+    RUN_TEST(a_count_of_wheels_below_none_is_none);
     return UNITY_END();
 }
