@@ -352,6 +352,24 @@ static void test_what_was_loaded_is_compared_before_frames_that_load_alone(void)
     TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
 }
 
+/* In FAULT the heartbeat tells of drives, however many there seem to be. */
+static void test_a_node_whose_count_of_drives_changed_goes_on_telling_that_it_lives(void) {
+    for (uint8_t bit = 0; bit < 32; bit++) {
+        laconic_frame frame;
+        int heartbeats = 0;
+        in_free_run_with(LACONIC_INTEGRITY_ALL);
+        ((uint8_t *)&on.node)[BYTE(drives.count) + bit / 8] ^= (uint8_t)(1U << bit % 8);
+        for (int k = 0; k < 20; k++) {
+            on.time_us += TICK_US;
+            bench_tick(&on);
+            while (bench_next(&on, &frame)) heartbeats += frame.id == LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HEARTBEAT;
+        }
+        TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+        TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+        TEST_ASSERT_TRUE(heartbeats > 0);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_sound_node_moves_as_one_that_is_not_watched);
@@ -378,5 +396,6 @@ int main(void) {
     RUN_TEST(test_a_node_whose_queue_is_not_checked_sends_as_ever);
     RUN_TEST(test_a_frame_for_others_and_one_that_commits_nothing_change_no_sum);
     RUN_TEST(test_what_was_loaded_is_compared_before_frames_that_load_alone);
+    RUN_TEST(test_a_node_whose_count_of_drives_changed_goes_on_telling_that_it_lives);
     return UNITY_END();
 }
