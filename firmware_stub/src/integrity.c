@@ -33,7 +33,13 @@ static const memory_part model_parts[] = {
     {(uint32_t)offsetof(laconic_node, first), \
      (uint32_t)(offsetof(laconic_node, last) + sizeof(((laconic_node *)NULL)->last) - offsetof(laconic_node, first))}
 
-/* What every call may write, but nobody between two calls; with what a wrong pointer or count would break at once. */
+/* Of the model, what a wrong pointer or count would break at once. */
+static const memory_part shape_parts[] = {
+    SPAN(plant.integrator.method, plant.integrator.step_s),
+    SPAN(plant.model.wheel_count, plant.model.dof),
+};
+
+/* What every call may write, but nobody between two calls; with the pointer and the count of drives. */
 static const memory_part motion_parts[] = {
     SPAN(free_run, lockstep),
     PART(session),
@@ -41,8 +47,6 @@ static const memory_part motion_parts[] = {
     PART(plant.state),
     PART(input[0]),
     PART(plant.steps),
-    SPAN(plant.integrator.method, plant.integrator.step_s),
-    SPAN(plant.model.wheel_count, plant.model.dof),
 #if LACONIC_NODE_WITH_DRIVES
     SPAN(drives.protocol, drives.count),
     PART(drives.wheel),
@@ -92,6 +96,12 @@ static laconic_memory_sum sum_of_model(const laconic_node *node) {
     return sum;
 }
 
+static laconic_memory_sum sum_of_shape(const laconic_node *node) {
+    laconic_memory_sum sum = {0, 0};
+    add_parts(&sum, node, shape_parts, PARTS(shape_parts));
+    return sum;
+}
+
 /* Inputs of the middle and the end of a step only where they are used, the slip only where there is friction. */
 static laconic_memory_sum sum_of_motion(const laconic_node *node) {
     laconic_memory_sum sum = {0, 0};
@@ -129,6 +139,7 @@ static void begin_round(laconic_integrity *it) {
 
 static void seal_motion(laconic_integrity *it, const laconic_node *node) {
     if ((it->checks & LACONIC_INTEGRITY_MOTION) == 0) return;
+    it->shape = sum_of_shape(node);
     it->motion = sum_of_motion(node);
     it->queue = sum_of_queue(node);
 }
@@ -139,6 +150,9 @@ static void fail(laconic_integrity *it, laconic_node *node, uint8_t broken) {
     it->broken = broken;
     node->pending = 0; /* what waits may be what is wrong */
     node->answers_due = 0;
+#if LACONIC_NODE_WITH_ESTIMATE
+    if (broken == LACONIC_INTEGRITY_OF_MODEL) node->estimates = false;
+#endif
     if (it->has_vehicle) {
         laconic_node_fail(node, &why, 0);
     } else {
@@ -228,15 +242,21 @@ static bool is_original(const laconic_node_config *config, const laconic_node_co
            config->method == original->method && config->nonce_seed == original->nonce_seed;
 }
 
+static void look_at_seals(laconic_integrity *it, laconic_node *node) {
+    if (!same(it->shape, sum_of_shape(node)))
+        fail(it, node, LACONIC_INTEGRITY_OF_MODEL);
+    else if (!same(it->queue, sum_of_queue(node)) || !same(it->motion, sum_of_motion(node)))
+        fail(it, node, LACONIC_INTEGRITY_OF_MOTION);
+}
+
 /* Before a call: its pointers, and that the memory is as the last call left it. */
 static void look(laconic_integrity *it, laconic_node *node, uint32_t now_us) {
     it->now_us = now_us;
     if (!is_original(&node->config, it->config)) {
         node->config = *it->config;
         fail(it, node, LACONIC_INTEGRITY_OF_CONFIGURATION);
-    } else if ((it->checks & LACONIC_INTEGRITY_MOTION) != 0 &&
-               (!same(it->queue, sum_of_queue(node)) || !same(it->motion, sum_of_motion(node)))) {
-        fail(it, node, LACONIC_INTEGRITY_OF_MOTION);
+    } else if ((it->checks & LACONIC_INTEGRITY_MOTION) != 0) {
+        look_at_seals(it, node);
     }
 }
 
@@ -270,7 +290,11 @@ void laconic_integrity_on_frame(laconic_integrity *integrity, laconic_node *node
     const bool loading = (integrity->checks & LACONIC_INTEGRITY_MOTION) != 0 && is_loading(node, frame);
     const uint32_t commits = node->session.count[LACONIC_WIRE_COMMIT];
     if (loading) look_at_loaded(integrity, node);
+    /* as one that has no vehicle: no frame but COMMIT does anything with a wrong model, whose counts may be too large */
+    const bool is_wrong = integrity->broken == LACONIC_INTEGRITY_OF_MODEL && node->state == LACONIC_WIRE_STATE_FAULT;
+    if (is_wrong) node->state = LACONIC_WIRE_STATE_EMPTY;
     laconic_node_on_frame(node, frame, now_us);
+    if (is_wrong && node->state == LACONIC_WIRE_STATE_EMPTY) node->state = LACONIC_WIRE_STATE_FAULT;
     if (loading) integrity->loaded = sum_of_loaded(node);
     if (node->session.count[LACONIC_WIRE_COMMIT] > commits && node->answer[LACONIC_WIRE_COMMIT].status == 0) {
         integrity->has_vehicle = true;

@@ -161,6 +161,51 @@ static void test_a_configuration_that_was_wrong_is_sound_again_when_no_check_is_
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+/* A wrong count of wheels leads behind the arrays of a vehicle, and a wrong pointer anywhere: neither is used. */
+static void test_no_order_but_a_commit_uses_a_model_that_is_wrong(void) {
+    const size_t bytes[] = {BYTE(plant.model.wheel_count), BYTE(plant.model.dof), BYTE(plant.integrator.step_s),
+                            BYTE(plant.integrator.chosen), BYTE(plant.integrator.method)};
+    const uint8_t orders[] = {LACONIC_WIRE_COMMAND_START_FREE_RUN, LACONIC_WIRE_COMMAND_RESET,
+                              LACONIC_WIRE_COMMAND_START_LOCKSTEP};
+    for (size_t k = 0; k < sizeof bytes / sizeof bytes[0]; k++)
+        for (uint8_t bit = 0; bit < 32; bit++) {
+            laconic_frame told;
+            in_free_run_with(LACONIC_INTEGRITY_MOTION);
+            ((uint8_t *)&on.node)[bytes[k] + bit / 8] ^= (uint8_t)(1U << bit % 8);
+            bench_tick(&on);
+            TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+            while (bench_next(&on, &told)) TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+            for (size_t order = 0; order < sizeof orders; order++) {
+                TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_WRONG_STATE, rig_command(&on, orders[order]));
+                TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+            }
+            TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+        }
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+}
+
+/* An estimate would read it with each heartbeat. That of a motion begins anew with RESET. */
+static void test_an_estimate_ends_with_the_model_that_it_is_of(void) {
+    laconic_frame told;
+    in_free_run_with(LACONIC_INTEGRITY_MOTION);
+    on.node.estimates = true;
+    on.node.plant.steps++;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+    TEST_ASSERT_TRUE(on.node.estimates);
+    in_free_run_with(LACONIC_INTEGRITY_MOTION);
+    on.node.estimates = true;
+    on.node.plant.model.wheel_count ^= 1 << 25;
+    for (int k = 0; k < 20; k++) {
+        on.time_us += TICK_US;
+        bench_tick(&on);
+        while (bench_next(&on, &told)) TEST_ASSERT_TRUE(told.id != LACONIC_WIRE_ID_BASE + LACONIC_WIRE_ERROR_ESTIMATE);
+    }
+    TEST_ASSERT_FALSE(on.node.estimates);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_commit_that_is_refused_makes_no_vehicle);
@@ -173,5 +218,7 @@ int main(void) {
     RUN_TEST(test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one);
     RUN_TEST(test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range);
     RUN_TEST(test_a_configuration_that_was_wrong_is_sound_again_when_no_check_is_chosen);
+    RUN_TEST(test_no_order_but_a_commit_uses_a_model_that_is_wrong);
+    RUN_TEST(test_an_estimate_ends_with_the_model_that_it_is_of);
     return UNITY_END();
 }

@@ -11,11 +11,11 @@
  *
  * SUM checks model and parameters twice a second against their sum at COMMIT, in slices, so that no call takes long:
  * a change is found within a second. RANGE checks after each tick that the motion is a possible one. MOTION checks
- * before each call that state, inputs, session and what waits to be sent are as the call before left them, and before
- * PARAMETER and COMMIT that what was loaded is. The configuration is always compared with the original, and repaired.
+ * before each call that state, inputs, session and what waits to be sent are as the call before left them, and so are
+ * the counts and pointers of the model, and before PARAMETER and COMMIT that what was loaded is. The configuration is always compared with the original, and repaired.
  *
  * What is found ends the run: inputs 0, state FAULT, and a RESULT to SYNC with MEMORY_CHANGED, whose item is one of the
- * numbers below. Only COMMIT heals a changed model, so RESET leads back to FAULT at once; RESET heals a changed motion.
+ * numbers below. Only COMMIT heals a changed model: until then RESET is refused; RESET heals a changed motion.
  * A node without a vehicle has nothing to keep and begins as after power-up.
  *
  * The sums are two of 32 bits (of words, and of the sums so far): every change within one word is found, and of others
@@ -65,7 +65,7 @@ typedef struct laconic_integrity {
     uint32_t slices, round_us; /* of this round, and when it began                                      */
     uint32_t now_us;           /* of this call                                                          */
     uint32_t rounds;           /* that have found all as it was                                         */
-    laconic_memory_sum model, running, motion, queue, loaded;
+    laconic_memory_sum model, running, shape, motion, queue, loaded;
 } laconic_integrity;
 
 /* After laconic_node_init with the same configuration, which must stay where it is. */
