@@ -11,8 +11,9 @@
  *
  * SUM checks model and parameters twice a second against their sum at COMMIT, in slices, so that no call takes long:
  * a change is found within a second. RANGE checks after each tick that the motion is a possible one. MOTION checks
- * before each call that state, inputs, session and what waits to be sent are as the call before left them, and so are
- * the counts and pointers of the model, and before PARAMETER and COMMIT that what was loaded is. The configuration is always compared with the original, and repaired.
+ * before each call that state, inputs, session and what waits to be sent are as the call before left them, and the
+ * counts and pointers of the model, too; before PARAMETER and COMMIT, that what was loaded is. The configuration is
+ * always compared with the original, and repaired.
  *
  * What is found ends the run: inputs 0, state FAULT, and a RESULT to SYNC with MEMORY_CHANGED, whose item is one of the
  * numbers below. Only COMMIT heals a changed model: until then RESET is refused; RESET heals a changed motion.

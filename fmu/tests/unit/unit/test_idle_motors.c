@@ -1,4 +1,4 @@
-/* Tests of idle_motors.c: a voltage for a wheel without a motor is told of, once in a run, and beside other warnings. */
+/* Tests of idle_motors.c: a voltage for a wheel without a motor is told once in a run, and beside other warnings. */
 #include "fmi2_bench.h"
 #include "grip_warning.h"
 #include "model_interface.h"
@@ -37,7 +37,7 @@ static void it_is_told_again_in_another_run(void) {
     }
 }
 
-/* Gains of 1 N m/V, 0 and 1 again: for all wheels, while there are voltages. Nothing is looked for where all have one. */
+/* Gains of 1 N m/V, 0 and 1 again: for all wheels, while there are voltages. Nothing is sought where all have one. */
 static void motors_may_lose_their_gain_in_a_run_and_get_it_back(void) {
     set("motor_gain_Nm_per_V", 0, 1);
     set("step_s", 0, 0.01);
