@@ -348,7 +348,7 @@ static void test_what_was_loaded_is_compared_before_frames_that_load_alone(void)
     TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
 }
 
-/* In FAULT the heartbeat tells of drives, however many there seem to be. */
+/* In FAULT the heartbeat tells of drives, however many there seem to be; RESET, which stops what plays, touches none. */
 static void test_a_node_whose_count_of_drives_changed_goes_on_telling_that_it_lives(void) {
     for (uint8_t bit = 0; bit < 32; bit++) {
         laconic_frame frame;
@@ -363,6 +363,8 @@ static void test_a_node_whose_count_of_drives_changed_goes_on_telling_that_it_li
         TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
         TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
         TEST_ASSERT_TRUE(heartbeats > 0);
+        TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_RESET));
+        TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_READY, on.node.state);
     }
 }
 
