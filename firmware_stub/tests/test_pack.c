@@ -174,6 +174,8 @@ static void a_heartbeat_tells_steps_state_and_lateness(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_READY, beat.state);
     TEST_ASSERT_EQUAL_UINT16(32766, beat.worst_lateness);
     TEST_ASSERT_EQUAL_UINT8(0, beat.deaf);
+    node.free_run.worst_lateness_us = 0;
+    TEST_ASSERT_EQUAL_UINT16(0, heartbeat().worst_lateness);
     node.free_run.worst_lateness_us = 1000000;
     node.session.deaf = BIT(LACONIC_WIRE_SYNC);
     beat = heartbeat();

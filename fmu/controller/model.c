@@ -78,7 +78,7 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
-/* cannot be reached: a controller has no internal step of its own */
+/* A controller has no internal step of its own. */
 fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
     (void)instance;
     (void)step_s;

@@ -2,7 +2,6 @@
  * acts before the next frame or period, and no state is saved. */
 #include "model_interface.h"
 
-/* cannot be reached: no parameter is tunable */
 fmu_status fmu_model_change(fmu_instance *instance) {
     instance->model.change_needed = false;
     return FMU_OK;
@@ -10,7 +9,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
 
 void fmu_model_input_changed(fmu_instance *instance) { (void)instance; }
 
-/* cannot be reached: saved_states.c refuses to write a model with bus terminals */
+/* saved_states.c refuses to write a model with bus terminals before it asks. */
 bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     (void)model;
     return !stream->failed;

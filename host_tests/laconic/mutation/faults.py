@@ -1,4 +1,4 @@
-"""Faults that another sampler made, as lines of JSON: {"file": "core_c/src/rk4.c", "start": 812, "end": 814, "text":
+"""Faults that another sampler made, as lines of JSON: {"file": "core_c/src/rk4.c", "start": 2097, "end": 2098, "text":
 "<="}, each the bytes of a file from `start` to `end` and what it had there instead."""
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ class Fault:
 
     def __str__(self) -> str:
         source = (SOURCE_DIR / self.file).read_bytes()
-        line = source.count(b"\n", 0, self.start) + 1
+        line, column = source.count(b"\n", 0, self.start) + 1, self.start - source.rfind(b"\n", 0, self.start)
         before = source[self.start:self.end].decode("utf-8", "replace")
-        return f"{self.file}:{line}: {' '.join(before.split())}  →  {' '.join(self.text.split())}"
+        return f"{self.file}:{line}:{column}: {' '.join(before.split())}  →  {' '.join(self.text.split())}"
 
 
 def read_faults(path: Path) -> list[Fault]:

@@ -18,6 +18,7 @@ from laconic.mutation.equivalent import Equivalent
 from laconic.mutation.operators import Change, name_of, parsed
 from laconic.mutation.order import without_order
 
+NO_CODE = "It changes no code: its bytes are of a comment or of spaces."
 BY_LAW = "C reads both alike: a law of laconic/mutation/alike.py."
 BY_SIGN = "Only a zero has another sign, and of that nothing is promised."
 BY_ORDER = "Only the order of statements is another, of which none names what the other writes, or one is there twice."
@@ -99,7 +100,7 @@ class _File:
         if now.words in self._reasons:
             return self._reasons[now.words]
         if now.words == self._text.words:
-            return BY_LAW
+            return NO_CODE
         if (name := self._changed_function(now)) is None:
             return None
         if name not in self._made:
