@@ -105,48 +105,6 @@ static void axes_are_the_same_without_damping(void) {
     }
 }
 
-/* Rollers on wheels so large that squares of their rows have few digits: the shares of damping that is the same
- * for all are 1, and so are those of none. */
-static void axes_are_the_same_without_damping_where_rows_hardly_are_numbers(void) {
-    laconic_vehicle v = three_wheels();
-    v.wheel_inertia_kgm2 = 0;
-    for (int i = 0; i < 3; i++) {
-        v.wheel[i].own_radius_m = EITHER(REAL(1e153), REAL(1e18));
-        v.wheel[i].axle_rad += REAL(0.3 * i);
-        v.wheel[i].roller_rad = REAL(1 + 0.2 * i);
-    }
-    const laconic_model without = model_of(v);
-    v.motor_damping_Nms = REAL(DAMPING);
-    const laconic_model with = model_of(v);
-    TEST_ASSERT_EQUAL_MEMORY(with.nu_of_zeta, without.nu_of_zeta, sizeof with.nu_of_zeta);
-    TEST_ASSERT_EQUAL_MEMORY(with.wheel_of_zeta, without.wheel_of_zeta, sizeof with.wheel_of_zeta);
-}
-
-/* Of wheels without inertia the columns stay as they were rotated. For some vehicles such small rotations would go on
- * for ever; for this one they end, and tell the bound. */
-static void columns_are_rotated_until_a_quarter_of_the_last_digit_is_left(void) {
-    laconic_vehicle v = bare_body();
-    v.mass_kg = 9;
-    v.yaw_inertia_kgm2 = REAL(0.125);
-    v.wheel_radius_m = REAL(0.1875);
-    v.wheel_inertia_kgm2 = 0;
-    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.375, -0.4375, -1.25, 1.25);
-    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1875, -0.4375, 2.75, 1);
-    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.0625, -0.0625, -0.75, 2);
-    const laconic_model m = model_of(v);
-    for (int a = 0; a < 3; a++) {
-        for (int b = a + 1; b < 3; b++) {
-            laconic_real aa = 0, bb = 0, ab = 0;
-            for (int i = 0; i < 3; i++) {
-                aa += m.wheel_of_zeta[i][a] * m.wheel_of_zeta[i][a];
-                bb += m.wheel_of_zeta[i][b] * m.wheel_of_zeta[i][b];
-                ab += m.wheel_of_zeta[i][a] * m.wheel_of_zeta[i][b];
-            }
-            TEST_ASSERT_TRUE(magnitude(ab) <= REAL(0.25) * LACONIC_EPSILON * laconic_root(aa) * laconic_root(bb));
-        }
-    }
-}
-
 static void degrees_of_freedom_are_counted(void) {
     laconic_vehicle v = differential_drive();
     TEST_ASSERT_EQUAL_INT(3, model_of(bare_body()).dof);
@@ -172,17 +130,6 @@ static void axle_lines_that_agree_to_rounding_count_once(void) {
     v.wheel[1].axle_rad += REAL(EITHER(1e-11, 1e-6));
     TEST_ASSERT_EQUAL_INT(2, model_of(v).dof);
     v.wheel[1].axle_rad += REAL(EITHER(1e-6, 1e-2));
-    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
-}
-
-/* Two wheels under the mass centre whose axles differ by just the tolerance, and by the next number. */
-static void axle_lines_that_differ_by_just_the_tolerance_count_once(void) {
-    laconic_vehicle v = bare_body();
-    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, 0.0, 0.0);
-    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, 0.0, 0.0);
-    v.wheel[1].axle_rad = LACONIC_RANK_TOLERANCE;
-    TEST_ASSERT_EQUAL_INT(2, model_of(v).dof);
-    v.wheel[1].axle_rad *= 1 + LACONIC_EPSILON;
     TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
 }
 
@@ -222,17 +169,6 @@ static void fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip(voi
     ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
 }
 
-/* Axle lines that meet so far away that the one motion turns by just the tolerance; the next number is beyond. */
-static void axle_lines_that_meet_at_just_the_tolerance_leave_a_rotation(void) {
-    laconic_vehicle v = bare_body();
-    laconic_model model;
-    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.05, 0.0, 0.0);
-    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, -0.03, EITHER(0x1.2533fe68fd3d3p-31, 0x1.65e9f6p-18), 0.0);
-    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
-    v.wheel[1].axle_rad *= 1 - LACONIC_EPSILON / 2;
-    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
-}
-
 static void a_brake_may_leave_straight_motion_alone(void) {
     laconic_vehicle v = bare_body();
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, -PI / 2, 0.0);
@@ -258,18 +194,6 @@ static void inertias_too_far_apart_for_the_precision_are_refused(void) {
     ASSERT_REFUSED(LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
     TEST_ASSERT_TRUE((double)why.value > EITHER(1e27, 1e9));
     v.wheel_inertia_kgm2 = REAL(EITHER(1e20, 1e6));
-    ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
-}
-
-/* The root of their ratio is a hundredth of what the last digit is of 1: just too much. */
-static void inertias_that_leave_a_hundredth_of_the_digits_are_refused(void) {
-    laconic_vehicle v = bare_body();
-    laconic_model model;
-    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, 0.0, 0.0);
-    v.wheel_inertia_kgm2 = EITHER(REAL(0x1.4f8b588e368f1p+85), REAL(0x1.4f8b58p+27));
-    ASSERT_REFUSED(LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
-    TEST_ASSERT_TRUE(LACONIC_EPSILON * laconic_root(why.value) == REAL(0.01));
-    v.wheel_inertia_kgm2 *= 1 - 8 * LACONIC_EPSILON;
     ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
 }
 
@@ -338,81 +262,6 @@ static void a_body_that_turns_alone_is_refused_by_both_of_its_yaw_scales(void) {
     TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
 }
 
-/* A body of 0.3 of the range's root by its mass, which counts once more as that of M R², and 0.8 of it by one number
- * more: each alone would be taken, both are too much. */
-static void numbers_that_leave_the_range_together_are_refused_and_do_not_cancel(void) {
-    const double root = EITHER(1.3407807929942596e154, 1.8446743e19);
-    for (int k = 0; k < 4; k++) {
-        laconic_vehicle v = bare_body();
-        laconic_model model;
-        v.wheel_radius_m = 1;
-        v.wheel_inertia_kgm2 = 0;
-        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.0, 0.0, 0.0, PI / 2);
-        laconic_real *const number[4] = {&v.motor_gain_Nm_per_V, &v.motor_damping_Nms, &v.com_x_m, &v.com_y_m};
-        if (k >= 2) v.wheel_count = 0; /* a place is seen from no wheel */
-        *number[k] = REAL(0.8 * root);
-        v.mass_kg = v.yaw_inertia_kgm2 = REAL(0.05 * root);
-        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
-        v.mass_kg = v.yaw_inertia_kgm2 = REAL(0.3 * root);
-        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
-        *number[k] = 0;
-        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
-    }
-}
-
-/* Sums that fill it: their order is one of the bits'. The largest number that is taken, and the next one. */
-static void the_end_of_the_range_is_there_to_the_last_bit(void) {
-    for (int k = 0; k < 2; k++) {
-        laconic_vehicle v = bare_body();
-        laconic_model model;
-        v.mass_kg = v.wheel_radius_m = v.yaw_inertia_kgm2 = 1;
-        v.wheel_inertia_kgm2 = 0;
-        laconic_real *const last = k == 0 ? &v.com_x_m : &v.motor_gain_Nm_per_V;
-        if (k == 0) { /* both coordinates and the square of 1/Λ */
-            v.com_y_m = EITHER(REAL(0x1.bffffffffffffp+509), REAL(0x1.bffffep+61));
-            v.yaw_inertia_kgm2 = EITHER(REAL(0x1.7d05f417d05f6p-511), REAL(0x1.7d05f6p-63));
-            *last = EITHER(REAL(0x1.c00000000000dp+508), REAL(0x1.bffffap+60));
-        } else { /* inertia, damping and gain of a wheel that is large, so that it turns slowly */
-            add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.0, 0.0, 0.0, PI / 2);
-            v.wheel[0].own_radius_m = EITHER(REAL(1e66), REAL(1e8));
-            v.mass_kg = EITHER(REAL(1.25), REAL(0.5));
-            v.wheel_inertia_kgm2 = EITHER(REAL(0x1.b7fffffffffffp+509), REAL(0x1.6ffffep+61));
-            v.motor_damping_Nms = EITHER(REAL(0x1.3ffffffffffffp+508), REAL(0x1.3ffffep+60));
-            *last = EITHER(REAL(0x1.9238e38e38e37p+510), REAL(0x1.faaaa8p+61));
-        }
-        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
-        *last += *last * (LACONIC_EPSILON / 2);
-        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
-    }
-}
-
-/* Squares beside which their root still counts: of w, and of a rotation that damping and inertia fill, too. */
-static void in_single_roots_beside_squares_count_at_the_end_of_the_range(void) {
-    const laconic_real known[2][2] = {{REAL(0x1.249262p-42), REAL(0x1.666656p+63)},
-                                      {REAL(0x1.249266p-42), REAL(0x1.66665ap+63)}};
-    for (int k = 0; k < 3 && !IN_DOUBLE; k++) { /* in double they are less than the last digit */
-        laconic_vehicle v = bare_body();
-        laconic_model model;
-        v.mass_kg = v.wheel_radius_m = 1;
-        laconic_real *const last = k < 2 ? &v.com_x_m : &v.motor_gain_Nm_per_V;
-        if (k < 2) {
-            v.yaw_inertia_kgm2 = known[k][0];
-            v.com_y_m = REAL(0x1.333332p+62);
-            *last = known[k][1];
-        } else {
-            v.yaw_inertia_kgm2 = REAL(0x1.c71c76p-124);
-            v.wheel_inertia_kgm2 = REAL(0x1.47ae14p-7);
-            v.motor_damping_Nms = REAL(0x1.51eb84p+55);
-            add_wheel(&v, LACONIC_WHEEL_FIXED, 0x1.b8874p-39, 0.0, 0.0, 0.0);
-            add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0x1.b8874p-39, PI / 2, 0.0);
-            *last = REAL(0x1.195c2p+61);
-        }
-        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
-        *last *= 1 + LACONIC_EPSILON;
-        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
-    }
-}
-
 /* The radius of gyration of this body is 0 in the scalar type, so a wheel under its centre has the lever 0/0. */
 static void a_body_without_any_extent_is_refused_and_never_gives_nan(void) {
     laconic_vehicle v = caster();
@@ -473,28 +322,20 @@ int main(void) {
     RUN_TEST(every_constraint_is_built_in);
     RUN_TEST(damping_rates_of_the_three_wheel_example_are_the_closed_form);
     RUN_TEST(axes_are_the_same_without_damping);
-    RUN_TEST(axes_are_the_same_without_damping_where_rows_hardly_are_numbers);
-    RUN_TEST(columns_are_rotated_until_a_quarter_of_the_last_digit_is_left);
     RUN_TEST(degrees_of_freedom_are_counted);
     RUN_TEST(columns_beyond_the_degrees_of_freedom_are_zero);
     RUN_TEST(axle_lines_that_agree_to_rounding_count_once);
-    RUN_TEST(axle_lines_that_differ_by_just_the_tolerance_count_once);
     RUN_TEST(a_locked_wheel_does_not_rotate);
     RUN_TEST(three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion);
     RUN_TEST(fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip);
-    RUN_TEST(axle_lines_that_meet_at_just_the_tolerance_leave_a_rotation);
     RUN_TEST(a_brake_may_leave_straight_motion_alone);
     RUN_TEST(what_the_vehicle_check_refuses_is_refused);
     RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
-    RUN_TEST(inertias_that_leave_a_hundredth_of_the_digits_are_refused);
     RUN_TEST(numbers_that_leave_the_range_are_refused);
     RUN_TEST(a_wheel_that_the_vehicle_has_not_is_not_blamed);
     RUN_TEST(a_wheel_just_within_the_range_is_blamed_with_its_own_number);
     RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan);
     RUN_TEST(a_body_that_turns_alone_is_refused_by_both_of_its_yaw_scales);
-    RUN_TEST(numbers_that_leave_the_range_together_are_refused_and_do_not_cancel);
-    RUN_TEST(the_end_of_the_range_is_there_to_the_last_bit);
-    RUN_TEST(in_single_roots_beside_squares_count_at_the_end_of_the_range);
     RUN_TEST(a_body_without_any_extent_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);

@@ -290,7 +290,7 @@ void laconic_integrity_on_frame(laconic_integrity *integrity, laconic_node *node
     const bool loading = (integrity->checks & LACONIC_INTEGRITY_MOTION) != 0 && is_loading(node, frame);
     const uint32_t commits = node->session.count[LACONIC_WIRE_COMMIT];
     if (loading) look_at_loaded(integrity, node);
-    /* as one that has no vehicle: no frame but COMMIT does anything with a wrong model, whose counts may be too large */
+    /* as one without a vehicle: no frame but COMMIT does anything with a wrong model, whose counts may be too large */
     const bool is_wrong = integrity->broken == LACONIC_INTEGRITY_OF_MODEL && node->state == LACONIC_WIRE_STATE_FAULT;
     if (is_wrong) node->state = LACONIC_WIRE_STATE_EMPTY;
     laconic_node_on_frame(node, frame, now_us);

@@ -138,8 +138,8 @@ static void pack_error_estimate(const laconic_node *node, uint8_t *data) {
 #define MOST_LATENESS 32767U
 
 /* While drives play there is no rig to be deaf to; the bit then tells that a drive has heard no controller in time. It
- * stays after STOP, since play reads its figures when the vehicle is at rest and no watchdog runs any more. A count that
- * integrity.c has found to be changed stays in the node until drives start again. */
+ * stays after STOP, since play reads its figures when the vehicle is at rest and no watchdog runs any more. A count
+ * that integrity.c has found to be changed stays in the node until drives start again. */
 static bool is_deaf(const laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
     const bool tells_of_drives = plays_drives(node) || !is_running(node);

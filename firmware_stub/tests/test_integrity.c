@@ -348,7 +348,8 @@ static void test_what_was_loaded_is_compared_before_frames_that_load_alone(void)
     TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
 }
 
-/* In FAULT the heartbeat tells of drives, however many there seem to be; RESET, which stops what plays, touches none. */
+/* In FAULT the heartbeat tells of drives, however many there seem to be; RESET, which stops what plays, touches none
+ * of them. */
 static void test_a_node_whose_count_of_drives_changed_goes_on_telling_that_it_lives(void) {
     for (uint8_t bit = 0; bit < 32; bit++) {
         laconic_frame frame;

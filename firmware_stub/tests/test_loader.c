@@ -206,15 +206,6 @@ static void a_wrong_item_of_any_field_is_unknown_and_not_left_out(void) {
     }
 }
 
-/* CRC-32 of the upper half's bit and the six bytes behind it, of each frame: not of its protection. */
-static void the_checksum_is_that_of_what_a_frame_tells(void) {
-    static const uint8_t told[7] = {0x10, 1, 0, 0x11, 0x22, 0x33, 0x44};
-    uint8_t data[9] = {0xAA, 0x1B, 1, 0, 0x11, 0x22, 0x33, 0x44, 0xBB};
-    laconic_loader_take(&loader, data);
-    TEST_ASSERT_EQUAL_HEX32(laconic_crc32(LACONIC_CRC32_START, told, 7), loader.checksum);
-    TEST_ASSERT_EQUAL_UINT16(1, loader.frame_count);
-}
-
 static void the_largest_kind_of_a_wheel_fits_a_byte_with_a_sign(void) {
     send(0, LACONIC_FIELD_WHEEL_KIND, 1, 127);
     TEST_ASSERT_EQUAL_UINT8(0, loader.status);
@@ -292,13 +283,6 @@ static void single_numbers_have_no_item(void) {
     TEST_ASSERT_EQUAL_INT(3, loader.parameters.drives.protocol);
     send_real(LACONIC_FIELD_SLOPE, 1, 0);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, loader.status);
-}
-
-static void a_loader_begins_with_the_usual_plan_of_drives(void) {
-    laconic_drive_plan usual;
-    memset(&usual, 0, sizeof usual);
-    laconic_drive_plan_begin(&usual);
-    TEST_ASSERT_EQUAL_MEMORY(&usual, &loader.parameters.drives, sizeof usual);
 }
 
 static void in_single_precision_an_upper_half_is_out_of_range(void) {
@@ -403,14 +387,6 @@ static void a_number_that_no_field_has_is_unknown(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
 }
 
-/* laconic.dbc and the rows of vehicle.h, settings.h and sensors.h each have the number. */
-static void test_the_wire_numbers_each_field_as_its_row_does(void) {
-#define COMPARED(of, number, IDENTIFIER, ...) \
-    TEST_ASSERT_EQUAL_MESSAGE(LACONIC_WIRE_FIELD_##IDENTIFIER, number, #IDENTIFIER);
-    LACONIC_LOADER_EVERY(COMPARED)
-#undef COMPARED
-}
-
 /* What is loaded is all that there can be: nothing is missing for the wheel or support that is one too many. */
 static void a_count_beyond_the_largest_is_for_the_core_to_refuse(void) {
     send_cart_without(0, 0);
@@ -432,7 +408,6 @@ static void a_count_beyond_the_largest_is_for_the_core_to_refuse(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(test_the_wire_numbers_each_field_as_its_row_does);
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
     RUN_TEST(a_wheels_own_values_arrive_and_driven_0_means_no_motor);
     RUN_TEST(a_field_or_item_that_is_not_there_is_remembered);
@@ -446,14 +421,12 @@ int main(void) {
     RUN_TEST(numbers_that_the_core_has_no_use_for_yet_are_refused_by_name);
     RUN_TEST(checksum_and_count_must_both_be_right);
     RUN_TEST(a_wrong_item_of_any_field_is_unknown_and_not_left_out);
-    RUN_TEST(the_checksum_is_that_of_what_a_frame_tells);
     RUN_TEST(the_largest_kind_of_a_wheel_fits_a_byte_with_a_sign);
     RUN_TEST(the_half_that_is_missing_is_named);
     RUN_TEST(an_upper_half_of_another_number_is_refused);
     RUN_TEST(a_kind_that_is_unset_and_a_count_below_0_are_for_the_core_to_refuse);
     RUN_TEST(rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing);
     RUN_TEST(single_numbers_have_no_item);
-    RUN_TEST(a_loader_begins_with_the_usual_plan_of_drives);
     RUN_TEST(in_single_precision_an_upper_half_is_out_of_range);
     RUN_TEST(an_integer_out_of_range_names_field_and_item);
     RUN_TEST(a_single_wheel_needs_the_numbers_of_wheels);

@@ -188,27 +188,6 @@ static void an_encoder_frame_that_waits_survives_a_reset(void) {
     TEST_ASSERT_EQUAL_INT(1, data[1] >> 4);
 }
 
-static void wheel_angles_are_wrapped_and_grouped(void) {
-    struct laconic_dbc_wheel_angle_t frame;
-    laconic_real angle[LACONIC_MAX_WHEELS];
-    bench_load(4);
-    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
-    bench_start_lockstep();
-    bench_voltage(1, 5 * VOLT, 0);
-    step(2000);
-    laconic_plant_wheel_angles(&node.plant, angle);
-    TEST_ASSERT_TRUE(angle[0] > 4);
-    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
-    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
-    TEST_ASSERT_EQUAL_INT(0, frame.group);
-    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[0]) * 10000), frame.wheel_angle_1);
-    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
-    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
-    TEST_ASSERT_EQUAL_INT(1, frame.group);
-    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[3]) * 10000), frame.wheel_angle_1);
-    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
-}
-
 static void frames_of_all_sensors_wait_side_by_side(void) {
     uint32_t seen = 0;
     laconic_frame frame;
@@ -325,39 +304,12 @@ static void an_imu_that_was_not_selected_is_not_sent(void) {
     TEST_ASSERT_EQUAL_UINT32((uint32_t)1 << LACONIC_WIRE_WHEEL_ANGLE, node.pending);
 }
 
-static void frames_of_wheels_begin_anew_with_each_step(void) {
-    bench_load(4);
-    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
-    bench_start_lockstep();
-    for (int k = 0; k < 2; k++) {
-        laconic_frame frame;
-        step(1);
-        TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame)); /* one of two is fetched */
-        TEST_ASSERT_EQUAL_UINT8(0, frame.data[1] >> 5);
-    }
-}
-
 static void sensors_that_nobody_asks_for_see_nothing(void) {
     bench_load(2);
     bench_select(0, LACONIC_RAW_NU, 0);
     bench_start_lockstep();
     step(5);
     TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
-}
-
-static void every_wheel_of_a_group_shows_its_own_angle(void) {
-    struct laconic_dbc_wheel_angle_t frame;
-    laconic_real angle[LACONIC_MAX_WHEELS];
-    bench_load(3);
-    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
-    bench_start_lockstep();
-    step(500);
-    laconic_plant_wheel_angles(&node.plant, angle);
-    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
-    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
-    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[1]) * 10000), frame.wheel_angle_2);
-    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[2]) * 10000), frame.wheel_angle_3);
-    TEST_ASSERT_TRUE(frame.wheel_angle_2 != 0);
 }
 
 /* Either frame, either raw number, and settings alone: each is enough for the sensors to watch. */
@@ -401,18 +353,6 @@ static void angles_that_were_not_selected_are_not_sent(void) {
     bench_start_lockstep();
     step(1);
     TEST_ASSERT_EQUAL_UINT32((uint32_t)1 << LACONIC_WIRE_IMU, node.pending);
-}
-
-static void angles_of_all_wheels_come_in_as_many_groups_as_they_need(void) {
-    bench_load(LACONIC_MAX_WHEELS);
-    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
-    bench_start_lockstep();
-    step(1);
-    for (int k = 0; k < (LACONIC_MAX_WHEELS + 2) / 3; k++) {
-        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
-        TEST_ASSERT_EQUAL_INT(k, data[1] >> 5);
-    }
-    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
 }
 
 /* One of two frames of each kind is fetched; then a selection without sensors, and a step. */
@@ -468,7 +408,6 @@ int main(void) {
     RUN_TEST(two_encoders_take_two_frames);
     RUN_TEST(an_encoder_frame_that_waits_falls_away_with_its_encoder);
     RUN_TEST(an_encoder_frame_that_waits_survives_a_reset);
-    RUN_TEST(wheel_angles_are_wrapped_and_grouped);
     RUN_TEST(frames_of_all_sensors_wait_side_by_side);
     RUN_TEST(a_vehicle_without_wheels_sends_neither_angles_nor_encoders);
     RUN_TEST(raw_numbers_of_sensors_have_all_their_bits);
@@ -476,13 +415,10 @@ int main(void) {
     RUN_TEST(sampled_and_free_running_steps_are_watched_too);
     RUN_TEST(while_drives_play_a_wheels_encoder_counts_as_its_drives_does);
     RUN_TEST(an_imu_that_was_not_selected_is_not_sent);
-    RUN_TEST(frames_of_wheels_begin_anew_with_each_step);
     RUN_TEST(sensors_that_nobody_asks_for_see_nothing);
-    RUN_TEST(every_wheel_of_a_group_shows_its_own_angle);
     RUN_TEST(one_wish_of_any_kind_makes_the_sensors_watch);
     RUN_TEST(any_setting_but_0_gives_the_vehicle_sensors);
     RUN_TEST(angles_that_were_not_selected_are_not_sent);
-    RUN_TEST(angles_of_all_wheels_come_in_as_many_groups_as_they_need);
     RUN_TEST(frames_that_wait_go_on_where_they_were_though_no_sensor_is_selected_now);
     RUN_TEST(an_imus_frame_and_raw_counts_are_sent_together);
     RUN_TEST(without_encoders_none_is_next);

@@ -389,57 +389,6 @@ static void wheels_that_are_not_there_have_no_speed(void) {
     for (size_t k = 36; k < 64; k++) TEST_ASSERT_EQUAL_HEX8(0, data[k]);
 }
 
-/* Whoever fetches a classic frame finds the rest of his 64 bytes as it was. */
-static void nothing_is_written_behind_the_eighth_byte_of_a_classic_frame(void) {
-    const laconic_start start = {{0, 2, 0}, 3, 4, 5, {0}};
-    const laconic_sensor_settings with = {.encoder[0] = {256, 3}};
-    uint8_t data[LACONIC_FRAME_BYTES];
-    int frames = 0;
-    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_sensors_start(&node.sensors, &with, &node.plant, NULL));
-    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, SELECTS_ESTIMATE));
-    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
-    for (uint8_t offset = LACONIC_WIRE_NODE_FIRST; offset < LACONIC_WIRE_OFFSETS; offset++) {
-        if (laconic_wire[offset].length != 8) continue;
-        node.answers_due = BIT(LACONIC_WIRE_CONTROL);
-        memset(data, 0x5A, sizeof data);
-        laconic_node_pack(&node, offset, data);
-        for (size_t k = 8; k < sizeof data; k++) TEST_ASSERT_EQUAL_HEX8(0x5A, data[k]);
-        frames++;
-    }
-    TEST_ASSERT_TRUE(frames > 8);
-}
-
-static int32_t lowest_asked, highest_asked;
-
-static const laconic_method *notes_who_is_asked_for(int32_t number) {
-    lowest_asked = number < lowest_asked ? number : lowest_asked;
-    highest_asked = number > highest_asked ? number : highest_asked;
-    return &laconic_rk4;
-}
-
-/* A port may have but one method and give it for any number. */
-static void an_identity_asks_for_methods_alone(void) {
-    uint8_t data[LACONIC_FRAME_BYTES];
-    lowest_asked = highest_asked = 1;
-    node.config.method = notes_who_is_asked_for;
-    laconic_node_pack(&node, LACONIC_WIRE_IDENTITY, data);
-    TEST_ASSERT_EQUAL_INT32(0, lowest_asked);
-    TEST_ASSERT_EQUAL_INT32(LACONIC_METHOD_COUNT - 1, highest_asked);
-}
-
-/* As a bit of the count that changes would make it; the frame before had the speeds of all wheels. */
-static void a_count_of_wheels_below_none_has_no_speeds(void) {
-    const laconic_start start = {{0, 2, 0}, 0, 0, 0, {0}};
-    uint8_t data[LACONIC_FRAME_BYTES];
-    bench_load(LACONIC_MAX_WHEELS);
-    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
-    laconic_node_pack(&node, LACONIC_WIRE_STATE_FD, data);
-    TEST_ASSERT_TRUE(word16(data + 32) != 0);
-    node.plant.model.wheel_count = INT32_MIN + LACONIC_MAX_WHEELS;
-    laconic_node_pack(&node, LACONIC_WIRE_STATE_FD, data);
-    for (size_t k = 32; k < 64; k++) TEST_ASSERT_EQUAL_HEX8(0, data[k]);
-}
-
 /* Its frames may wait from the vehicle before, which had wheels that moved. */
 static void wheels_of_a_puck_stand_still(void) {
     static const uint8_t frames[] = {LACONIC_WIRE_WHEEL_SPEED, LACONIC_WIRE_WHEEL_ANGLE};
@@ -479,9 +428,6 @@ int main(void) {
     RUN_TEST(frames_of_a_kind_are_counted_upwards);
     RUN_TEST(more_than_a_half_of_a_unit_is_one);
     RUN_TEST(wheels_that_are_not_there_have_no_speed);
-    RUN_TEST(nothing_is_written_behind_the_eighth_byte_of_a_classic_frame);
-    RUN_TEST(an_identity_asks_for_methods_alone);
-    RUN_TEST(a_count_of_wheels_below_none_has_no_speeds);
     RUN_TEST(wheels_of_a_puck_stand_still);
     return UNITY_END();
 }

@@ -131,7 +131,8 @@ static void third_set(const char *name, uint32_t element, double value) {
     OK(fmi3SetFloat64(third, &reference, 1, &value, 1));
 }
 
-/* What comes between internal steps: perhaps somebody reads, perhaps with a force by which no other step is possible. */
+/* What comes between internal steps: perhaps somebody reads, perhaps with a force by which no
+ * other step is possible. */
 static void between(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean set_requested, fmi3Boolean get_allowed,
                     fmi3Boolean finished, fmi3Boolean can_return, fmi3Boolean *early, fmi3Float64 *early_time) {
     (void)e, (void)time, (void)set_requested, (void)get_allowed, (void)finished, (void)can_return, (void)early_time;

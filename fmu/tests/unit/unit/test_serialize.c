@@ -204,7 +204,7 @@ static void a_state_from_before_the_start_is_no_plant(void) {
     OK(fmi2ExitInitializationMode(c));
 }
 
-/* Parameters were set after the model had started: it starts anew, and bytes that were read are written as they were. */
+/* Parameters were set after the model had started: it starts anew, and what was read is written as it was. */
 static void a_state_that_must_be_started_anew_comes_back(void) {
     static fmi2Byte first[sizeof bytes];
     set_integer("method", 0, 1);
