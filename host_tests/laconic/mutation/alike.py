@@ -134,7 +134,7 @@ def _without_length(node: Node) -> Meaning:
 def without_growth(before: Meaning, after: Meaning) -> Meaning:
     """`after` with the lengths of `before` for every array of it that is only longer, and whose size nothing asks."""
     asked = repr([each for each in within(before) if each[0] == "sizeof_expression" or _is_macro(each)
-                  or each[:2] == ("pointer_expression", ("&", "&"))
+                  or each[:2] == ("pointer_expression", ("&", "&")) and each[2][0] == "identifier"
                   or each[0] == "init_declarator" and each[-1][0] == "string_literal"])
 
     def shortened(before: Meaning, after: Meaning) -> Meaning:
