@@ -27,6 +27,15 @@ static void takes_the_very_steps_of_exponential_gauss_8_whatever_the_damping(voi
     }
 }
 
+/* Both of the methods that it chooses among tell what they take usual steps by. */
+static void either_choice_tells_its_name_and_order(void) {
+    const laconic_method *either[] = {&laconic_auto_slow, &laconic_auto_fast};
+    for (int k = 0; k < 2; k++) {
+        TEST_ASSERT_EQUAL_STRING("exponential-gauss-8", either[k]->name);
+        TEST_ASSERT_EQUAL_INT32(8, either[k]->order);
+    }
+}
+
 static void free_motion_keeps_its_energy_to_rounding(void) {
     const laconic_vehicle v = three_wheels();
     const laconic_model m = model_of(v);
@@ -105,6 +114,7 @@ static void what_exact_flow_cannot_take_is_refused_while_damping_is_fast(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(takes_the_very_steps_of_exponential_gauss_8_whatever_the_damping);
+    RUN_TEST(either_choice_tells_its_name_and_order);
     RUN_TEST(free_motion_keeps_its_energy_to_rounding);
     RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion);
     RUN_TEST(is_of_eighth_order_under_everything_that_can_act);
