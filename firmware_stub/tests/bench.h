@@ -80,6 +80,28 @@ static inline void bench_sync(uint32_t steps) {
     bench_send(LACONIC_WIRE_SYNC, data);
 }
 
+/* Ticks until no step is due. */
+static inline void bench_tick_lockstep(void) {
+    while (node.lockstep.steps_due > 0) laconic_node_on_tick(&node, now_us);
+}
+
+#define VOLT 500 /* in units of VOLTAGE */
+
+/* Some steps in lockstep with 5 V on the first three wheels. */
+static inline void bench_step(uint32_t steps) {
+    bench_voltage(0, 5 * VOLT, 0);
+    bench_sync(steps);
+    bench_tick_lockstep();
+}
+
+/* A tick each millisecond. */
+static inline void bench_pass_ms(uint32_t milliseconds) {
+    for (uint32_t k = 0; k < milliseconds; k++) {
+        now_us += 1000;
+        laconic_node_on_tick(&node, now_us);
+    }
+}
+
 /* A cart with `wheels` fixed wheels on one axle, ready. */
 static inline void bench_load(int32_t wheels) {
     laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1, .motor_gain_Nm_per_V = 1};

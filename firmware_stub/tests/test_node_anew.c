@@ -19,10 +19,6 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-static void pass(uint32_t milliseconds) {
-    for (uint32_t k = 0; k < milliseconds; k++) laconic_node_on_tick(&node, now_us += 1000);
-}
-
 /* ------------------------------------------------------------------------------- frames of the rig -- */
 
 static void voltages_fd(int16_t raw) {
@@ -82,9 +78,9 @@ static void a_second_free_run_has_its_own_watchdog(void) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 1000, 50));
     bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 1000, 10));
-    pass(9);
+    bench_pass_ms(9);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FREE_RUN, node.state);
-    pass(3);
+    bench_pass_ms(3);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_TIMEOUT, node.state);
 }
 
@@ -161,10 +157,10 @@ static void a_fault_names_what_sensors_refuse_after_a_step_of_drives(void) {
     node.state = LACONIC_WIRE_STATE_READY;
     laconic_node_start_sensors(&node, &far);
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
-    pass(2);
+    bench_pass_ms(2);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_DRIVES, node.state);
     node.input[0].body_moment_Nm = 100000;
-    pass(1);
+    bench_pass_ms(1);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_OVERFLOW, data[3]);

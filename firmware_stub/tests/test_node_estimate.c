@@ -5,7 +5,6 @@
 #include "drive_scene.h"
 #include "unity.h"
 
-#define VOLT 500         /* in units of VOLTAGE */
 #define CHOSEN 0x20U     /* of SELECT, with the take_ bits */
 #define CYCLE_US 100000U /* of ERROR_ESTIMATE */
 
@@ -27,16 +26,6 @@ static void load_turning(void) {
     TEST_ASSERT_EQUAL_INT(
         LACONIC_OK, laconic_plant_start(&node.plant, &vehicle, &laconic_exact_flow, SCENE_STEP_S, &node.start, &why));
     node.state = LACONIC_WIRE_STATE_READY;
-}
-
-static void tick_lockstep(void) {
-    while (node.lockstep.steps_due > 0) laconic_node_on_tick(&node, now_us);
-}
-
-static void step(uint32_t steps) {
-    bench_voltage(0, 5 * VOLT, 0);
-    bench_sync(steps);
-    tick_lockstep();
 }
 
 /* The next heartbeat makes the pages due. */
@@ -78,7 +67,7 @@ static void unless_chosen_there_is_none(void) {
     load_turning();
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_NU, 0, 0));
     bench_start_lockstep();
-    step(50);
+    bench_step(50);
     pass_a_cycle();
     TEST_ASSERT_FALSE(node.estimates);
     TEST_ASSERT_EQUAL_INT(0, node.estimate.taken);
@@ -94,7 +83,7 @@ static void its_pages_are_the_cores_numbers_every_100_ms(void) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
     bench_start_lockstep();
     for (int k = 0; k < 3; k++) {
-        step(70);
+        bench_step(70);
         TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &held, 70, &why));
         laconic_estimate_read(&errors, &estimate, &plant);
         TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ERROR_ESTIMATE, data));
@@ -111,12 +100,12 @@ static void pages_are_of_one_instant(void) {
     load_turning();
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
     bench_start_lockstep();
-    step(40);
+    bench_step(40);
     laconic_estimate_read(&errors, &node.estimate, &node.plant);
     pass_a_cycle();
     TEST_ASSERT_TRUE(page(0).nu == (float)errors.now.nu_rad_per_s);
     bench_sync(40);
-    tick_lockstep();
+    bench_tick_lockstep();
     TEST_ASSERT_TRUE(page(1).place == (float)errors.now.place_m);
 }
 
@@ -124,7 +113,7 @@ static void it_begins_anew_with_reset_and_ends_with_open(void) {
     load_turning();
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
     bench_start_lockstep();
-    step(60);
+    bench_step(60);
     const laconic_real place_m = node.estimate.largest.place_m;
     TEST_ASSERT_TRUE(place_m > 0);
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
@@ -239,12 +228,12 @@ static void expect_refused(uint32_t steps) {
     load_turning();
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
     bench_start_lockstep();
-    step(20);
+    bench_step(20);
     const int32_t taken = node.estimate.taken;
     const laconic_estimate before = node.estimate;
     node.input[0].voltage_V[0] = nothing / nothing;
     bench_sync(steps);
-    tick_lockstep();
+    bench_tick_lockstep();
     TEST_ASSERT_EQUAL_MEMORY(before.local, node.estimate.local, sizeof before.local);
     TEST_ASSERT_EQUAL_MEMORY(before.first_path_m, node.estimate.first_path_m, sizeof before.first_path_m);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
@@ -334,12 +323,12 @@ static void sampled_inputs_end_with_their_last_and_a_refused_step_counts_not(voi
     bench_start_lockstep();
     for (int k = 0; k < 3; k++) node.input[k].voltage_V[0] = REAL(1 + k);
     bench_sync(1);
-    tick_lockstep();
+    bench_tick_lockstep();
     TEST_ASSERT_EQUAL_INT(1, node.estimate.taken);
     TEST_ASSERT_EQUAL_MEMORY(&node.input[2], &node.estimate.input, sizeof node.input[2]);
     node.input[0].voltage_V[0] = LACONIC_REAL_MAX * 2;
     bench_sync(1);
-    tick_lockstep();
+    bench_tick_lockstep();
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
     TEST_ASSERT_EQUAL_INT(0, node.estimate.taken);
 }

@@ -6,8 +6,6 @@
 #include "laconic_node/crc.h"
 #include "unity.h"
 
-#define VOLT 500 /* in units of VOLTAGE */
-
 static uint8_t data[LACONIC_FRAME_BYTES];
 
 static laconic_sensor_settings settings(void) {
@@ -27,13 +25,6 @@ static void load(laconic_sensor_settings with) {
 void setUp(void) { bench_begin(); }
 
 void tearDown(void) {}
-
-/* Some steps in lockstep with 5 V on both wheels. */
-static void step(uint32_t steps) {
-    bench_voltage(0, 5 * VOLT, 0);
-    bench_sync(steps);
-    while (node.lockstep.steps_due > 0) laconic_node_on_tick(&node, now_us);
-}
 
 static laconic_sensor_outputs readings(void) {
     laconic_sensor_outputs out;
@@ -109,7 +100,7 @@ static void imu_frames_show_its_readings_scaled(void) {
     load(settings());
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_IMU, 0, 0));
     bench_start_lockstep();
-    step(20);
+    bench_step(20);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_IMU, data));
     const laconic_sensor_outputs now = readings();
     TEST_ASSERT_TRUE(now.imu_acceleration_m_per_s2[1] > 1 && now.imu_acceleration_m_per_s2[0] > REAL(0.3));
@@ -128,7 +119,7 @@ static void a_reading_beyond_its_frame_saturates_with_the_flag(void) {
     load(with);
     bench_select(LACONIC_NODE_SEND_IMU, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_IMU, data));
     struct laconic_dbc_imu_t frame;
     laconic_dbc_imu_unpack(&frame, data, 8);
@@ -140,7 +131,7 @@ static void encoder_frames_come_for_the_wheels_that_have_one(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
     bench_start_lockstep();
-    step(2000);
+    bench_step(2000);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
     laconic_dbc_encoder_unpack(&frame, data, 8);
     const int64_t count = node.sensors.encoder[1].count;
@@ -159,7 +150,7 @@ static void two_encoders_take_two_frames(void) {
     load(with);
     bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     for (int k = 0; k < 2; k++) {
         TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
         TEST_ASSERT_EQUAL_INT(k, data[1] >> 4);
@@ -172,7 +163,7 @@ static void an_encoder_frame_that_waits_falls_away_with_its_encoder(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
     TEST_ASSERT_EQUAL_UINT8(0, commit_puck(0));
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ENCODER, data));
@@ -182,7 +173,7 @@ static void an_encoder_frame_that_waits_survives_a_reset(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
     TEST_ASSERT_EQUAL_INT(1, data[1] >> 4);
@@ -194,7 +185,7 @@ static void frames_of_all_sensors_wait_side_by_side(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_IMU, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     while (laconic_node_next_frame(&node, &frame)) seen |= BIT(frame.id - LACONIC_WIRE_ID_BASE);
     const uint32_t wanted = BIT(LACONIC_WIRE_WHEEL_ANGLE) | BIT(LACONIC_WIRE_IMU) | BIT(LACONIC_WIRE_ENCODER);
     TEST_ASSERT_EQUAL_HEX32(wanted, seen & wanted);
@@ -220,7 +211,7 @@ static void have_all_their_bits_behind(size_t others, uint8_t raw) {
     load(settings());
     bench_select(0, LACONIC_RAW_IMU | LACONIC_RAW_ENCODER | raw, 0);
     bench_start_lockstep();
-    step(30);
+    bench_step(30);
     const laconic_sensor_outputs now = readings();
     TEST_ASSERT_EQUAL_UINT16(others * sizeof number[0] + sizeof number, node.raw_output.size);
     memcpy(number, node.raw_output.number + others, sizeof number);
@@ -241,7 +232,7 @@ static void without_settings_a_selected_imu_is_an_ideal_one(void) {
     bench_load(2);
     bench_select(LACONIC_NODE_SEND_IMU, LACONIC_RAW_IMU, 0);
     bench_start_lockstep();
-    step(10);
+    bench_step(10);
     const laconic_real *number = node.raw_output.number;
     TEST_ASSERT_TRUE(number[1] > REAL(9.9) &&
                      number[1] < REAL(10.1)); /* 2 · 5 V at 1 kg, 1 m and no inertia of wheels */
@@ -300,7 +291,7 @@ static void an_imu_that_was_not_selected_is_not_sent(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_EQUAL_UINT32((uint32_t)1 << LACONIC_WIRE_WHEEL_ANGLE, node.pending);
 }
 
@@ -308,7 +299,7 @@ static void sensors_that_nobody_asks_for_see_nothing(void) {
     bench_load(2);
     bench_select(0, LACONIC_RAW_NU, 0);
     bench_start_lockstep();
-    step(5);
+    bench_step(5);
     TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
 }
 
@@ -321,13 +312,13 @@ static void one_wish_of_any_kind_makes_the_sensors_watch(void) {
         bench_load(2);
         TEST_ASSERT_EQUAL_UINT8(0, bench_select(wish[k][0], wish[k][1], 0));
         bench_start_lockstep();
-        step(3);
+        bench_step(3);
         TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
     }
     bench_begin();
     load(settings());
     bench_start_lockstep();
-    step(3);
+    bench_step(3);
     TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
 }
 
@@ -351,7 +342,7 @@ static void angles_that_were_not_selected_are_not_sent(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_IMU, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_EQUAL_UINT32((uint32_t)1 << LACONIC_WIRE_IMU, node.pending);
 }
 
@@ -363,7 +354,7 @@ static void frames_that_wait_go_on_where_they_were_though_no_sensor_is_selected_
     TEST_ASSERT_EQUAL(LACONIC_OK, laconic_sensors_start(&node.sensors, &with, &node.plant, NULL));
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_ENCODER, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
     TEST_ASSERT_EQUAL_INT(0, data[1] >> 5);
     node.pending &= ~BIT(LACONIC_WIRE_WHEEL_ANGLE);
@@ -373,7 +364,7 @@ static void frames_that_wait_go_on_where_they_were_though_no_sensor_is_selected_
     bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     bench_select(LACONIC_NODE_SEND_NU, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
     TEST_ASSERT_EQUAL_INT(1, data[1] >> 5);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
@@ -386,7 +377,7 @@ static void an_imus_frame_and_raw_counts_are_sent_together(void) {
     load(settings());
     bench_select(LACONIC_NODE_SEND_IMU, LACONIC_RAW_ENCODER, 0);
     bench_start_lockstep();
-    step(2000);
+    bench_step(2000);
     TEST_ASSERT_TRUE(node.raw_output.number[1] == readings().encoder_count[1]);
     TEST_ASSERT_TRUE(node.raw_output.number[1] > 0);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_IMU, data));

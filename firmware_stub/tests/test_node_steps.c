@@ -16,13 +16,6 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-static void pass(uint32_t milliseconds) {
-    for (uint32_t k = 0; k < milliseconds; k++) {
-        now_us += 1000;
-        laconic_node_on_tick(&node, now_us);
-    }
-}
-
 static void play(uint8_t raw, uint8_t take) {
     const laconic_vehicle vehicle = scene_vehicle(0);
     memset(&node.start, 0, sizeof node.start);
@@ -35,17 +28,17 @@ static void play(uint8_t raw, uint8_t take) {
 
 static void sensors_that_nobody_asks_for_see_nothing_of_drives(void) {
     play(0, 0);
-    pass(3);
+    bench_pass_ms(3);
     TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
     TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
 }
 
 static void a_step_of_drives_that_is_refused_ends_in_fault_under_sensors_too(void) {
     play(LACONIC_RAW_IMU, 0);
-    pass(3);
+    bench_pass_ms(3);
     TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
     node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
-    pass(1);
+    bench_pass_ms(1);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_BODY_MOMENT, data[4]); /* what the step was refused for */
@@ -56,10 +49,10 @@ static void a_step_of_drives_that_is_refused_ends_in_fault_under_sensors_too(voi
 /* As those that go by classic frames. */
 static void the_next_step_waits_until_the_torques_are_sent_by_can_fd(void) {
     play(LACONIC_RAW_WHEEL_SPEED | RAW_BY_FD, SELECT_RAW_AXLE_TORQUE);
-    pass(1);
+    bench_pass_ms(1);
     laconic_node_on_tick(&node, now_us); /* and until its time has come */
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
-    pass(4);
+    bench_pass_ms(4);
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RAW_OUTPUT_FD, data));
     while (bench_receive(LACONIC_WIRE_RAW_OUTPUT_FD, data)) {
@@ -122,7 +115,7 @@ static void only_the_torques_hold_the_next_step_back(void) {
     play(0, 0);
     bench_send(LACONIC_WIRE_SELECT, select);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
-    pass(2);
+    bench_pass_ms(2);
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
     while (node.pending & BIT(LACONIC_WIRE_RAW_OUTPUT)) TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame));
     TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_IMU), node.pending);
@@ -140,7 +133,7 @@ static void drives_have_the_time_of_their_node_whoever_watches(void) {
         now_us = 5000000;
         play(raw[k], take[k]);
         TEST_ASSERT_EQUAL_UINT32(now_us, node.drives.now_us);
-        pass(3);
+        bench_pass_ms(3);
         TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
         TEST_ASSERT_EQUAL_UINT32(now_us, node.drives.now_us);
         now_us += 500;
@@ -164,7 +157,7 @@ static void a_refused_step_names_its_field_whoever_watches(void) {
             bench_sync(1);
         }
         node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
-        pass(1);
+        bench_pass_ms(1);
         TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
         TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
         TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_FINITE, data[3]);
@@ -198,7 +191,7 @@ static void a_sync_begins_raw_inputs_anew(void) {
 
 static void raw_numbers_and_an_estimate_make_a_node_speak_while_drives_play(void) {
     play(LACONIC_RAW_WHEEL_SPEED, 0x20U);
-    pass(100);
+    bench_pass_ms(100);
     TEST_ASSERT_TRUE(node.pending & BIT(LACONIC_WIRE_HEARTBEAT));
 }
 

@@ -2,19 +2,11 @@
 #include "bench.h"
 #include "unity.h"
 
-#define VOLT 500 /* in units of VOLTAGE */
 static uint8_t data[LACONIC_FRAME_BYTES];
 
 void setUp(void) { bench_begin(); }
 
 void tearDown(void) {}
-
-/* Some steps in lockstep with 5 V on both wheels. */
-static void step(uint32_t steps) {
-    bench_voltage(0, 5 * VOLT, 0);
-    bench_sync(steps);
-    while (node.lockstep.steps_due > 0) laconic_node_on_tick(&node, now_us);
-}
 
 static void wheel_angles_are_wrapped_and_grouped(void) {
     struct laconic_dbc_wheel_angle_t frame;
@@ -23,7 +15,7 @@ static void wheel_angles_are_wrapped_and_grouped(void) {
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
     bench_start_lockstep();
     bench_voltage(1, 5 * VOLT, 0);
-    step(2000);
+    bench_step(2000);
     laconic_plant_wheel_angles(&node.plant, angle);
     TEST_ASSERT_TRUE(angle[0] > 4);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
@@ -43,7 +35,7 @@ static void frames_of_wheels_begin_anew_with_each_step(void) {
     bench_start_lockstep();
     for (int k = 0; k < 2; k++) {
         laconic_frame frame;
-        step(1);
+        bench_step(1);
         TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame)); /* one of two is fetched */
         TEST_ASSERT_EQUAL_UINT8(0, frame.data[1] >> 5);
     }
@@ -55,7 +47,7 @@ static void every_wheel_of_a_group_shows_its_own_angle(void) {
     bench_load(3);
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
     bench_start_lockstep();
-    step(500);
+    bench_step(500);
     laconic_plant_wheel_angles(&node.plant, angle);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
     laconic_dbc_wheel_angle_unpack(&frame, data, 8);
@@ -68,7 +60,7 @@ static void angles_of_all_wheels_come_in_as_many_groups_as_they_need(void) {
     bench_load(LACONIC_MAX_WHEELS);
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
     bench_start_lockstep();
-    step(1);
+    bench_step(1);
     for (int k = 0; k < (LACONIC_MAX_WHEELS + 2) / 3; k++) {
         TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
         TEST_ASSERT_EQUAL_INT(k, data[1] >> 5);

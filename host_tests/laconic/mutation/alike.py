@@ -217,9 +217,9 @@ def _digits(text: str) -> Meaning:
 def _plain(text: str) -> str:
     """A number with a point or a power by its value: the same whatever its zeros."""
     number = Decimal(text).as_tuple()
-    digits = "".join(map(str, number.digits)).strip("0")
-    zeros = len(number.digits) - len("".join(map(str, number.digits)).rstrip("0"))
-    return f"{digits}e{int(number.exponent) + zeros}" if digits else "0e0"
+    digits = "".join(map(str, number.digits))
+    kept = digits.rstrip("0")
+    return f"{int(kept)}e{int(number.exponent) + len(digits) - len(kept)}" if kept else "0e0"
 
 
 def _binary(node: Node) -> Meaning:
