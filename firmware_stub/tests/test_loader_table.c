@@ -28,7 +28,7 @@ static void a_loader_begins_with_the_usual_plan_of_drives(void) {
 }
 
 /* laconic.dbc and the rows of vehicle.h, settings.h and sensors.h each have the number. */
-static void test_the_wire_numbers_each_field_as_its_row_does(void) {
+static void the_wire_numbers_each_field_as_its_row_does(void) {
 #define COMPARED(of, number, IDENTIFIER, ...) \
     TEST_ASSERT_EQUAL_MESSAGE(LACONIC_WIRE_FIELD_##IDENTIFIER, number, #IDENTIFIER);
     LACONIC_LOADER_EVERY(COMPARED)
@@ -37,7 +37,7 @@ static void test_the_wire_numbers_each_field_as_its_row_does(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(test_the_wire_numbers_each_field_as_its_row_does);
+    RUN_TEST(the_wire_numbers_each_field_as_its_row_does);
     RUN_TEST(the_checksum_is_that_of_what_a_frame_tells);
     RUN_TEST(a_loader_begins_with_the_usual_plan_of_drives);
     return UNITY_END();

@@ -22,4 +22,19 @@ static inline void send(const char *node) {
 
 static inline void begin(void) { OK(begin_from(0)); }
 
+/* A frame on a bus that has carried all but five of the frames that it can count, five of them with an error; every so
+ * many have one. */
+static inline fmu_model *one_frame_near_the_last_number(int32_t error_every) {
+    set_integer("error_every", error_every);
+    begin();
+    fmu_model *model = &instance()->model;
+    model->carried = INT32_MAX - 5;
+    model->failed = 5;
+    put(0x30, false, false);
+    send("Node1");
+    update();
+    step(0, 1e-3);
+    return model;
+}
+
 #endif

@@ -170,15 +170,7 @@ static void an_error_is_told_to_both_nodes_and_to_no_other(void) {
 
 /* Behind the last number frames are counted from 1. */
 static void behind_the_last_number_a_first_frame_is_carried(void) {
-    set_integer("error_every", 2);
-    begin();
-    fmu_model *model = &instance()->model;
-    model->carried = INT32_MAX - 5;
-    model->failed = 5;
-    put(0x30, false, false);
-    send("Node1");
-    update();
-    step(0, 1e-3);
+    fmu_model *model = one_frame_near_the_last_number(2);
     TEST_ASSERT_TRUE(model->carried == INT32_MAX - 4 && model->failed == 5);
 }
 
