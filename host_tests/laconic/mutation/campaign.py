@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from laconic.errors import BadInput
+from laconic.mutation.compiled import Compiled
 from laconic.mutation.equivalent import read_equivalents
 from laconic.mutation.listed import Listed
 from laconic.mutation.operators import Mutant, mutants_of
-from laconic.mutation.programs import FAMILIES, families
 from laconic.mutation.results import Results
 from laconic.mutation.switches import bench_of
-from laconic.mutation.trial import Outcome, Trials, is_of_fmu
+from laconic.mutation.trial import Outcome, Trials
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
 PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/estimate", "core_c/filter"),
@@ -108,15 +108,14 @@ class Campaign:
         return self.tally
 
     def _try(self, todo: list[Mutant], results: Results, until: float, advance: Callable[[float], None]) -> None:
-        of_fmu = {is_of_fmu(mutant.file) for mutant in todo}
-        tested = families(self.folder, [name for name in FAMILIES if name.startswith("fmu_") in of_fmu])
-        for family in tested:
+        compiled = Compiled.of((mutant.file for mutant in todo), self.folder)
+        for family in compiled.families:
             family.link()
             family.check()
-        trials, workers = Trials(tested, self.folder), os.cpu_count() or 1
+        trials, workers = Trials(compiled), os.cpu_count() or 1
         trees: queue.Queue[Path] = queue.Queue()
         for number in range(workers):
-            trees.put(trials.tree(number))
+            trees.put(compiled.tree(number))
 
         todo = self._try_by_switches(todo, trials, trees, results, until, advance)
 

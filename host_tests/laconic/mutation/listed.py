@@ -42,6 +42,11 @@ class Listed:
         of = self._of(file)
         return of.reason(change) or of.reason_of_survivor(change)
 
+    def beside(self, file: str, change: Change) -> tuple[str, str, dict[str, str]]:
+        """The file without comments as it stands and with the change; what the rows make of the same lines, each with
+        its reason."""
+        return self._of(file).beside(change)
+
     def no_test_can_notice(self, file: str, change: Change) -> bool:
         """Whether the list says so, whatever tests there are."""
         return self._of(file).reason(change) is not None
@@ -64,6 +69,19 @@ class _Text:
         blank = re.sub(rb"/\*.*?\*/", lambda found: b"\n" * found[0].count(b"\n") or b" ", source, flags=re.DOTALL)
         squeezed = (" ".join(line.split()) for line in blank.decode("utf-8").splitlines())
         return cls([line for line in squeezed if line])
+
+    @property
+    def source(self) -> str:
+        """What a compiler takes."""
+        return "\n".join(self.lines) + "\n"
+
+    def differs_in(self, other: _Text) -> range:
+        """The lines that the other has not or has otherwise; at least one."""
+        here, there = self.lines, other.lines
+        shorter = min(len(here), len(there))
+        first = next((k for k in range(shorter) if here[k] != there[k]), shorter)
+        last = next((k for k in range(shorter - first) if here[-1 - k] != there[-1 - k]), shorter - first)
+        return range(first, max(len(here) - last, first + 1))
 
     @cached_property
     def functions(self) -> dict[str, Node]:
@@ -120,6 +138,14 @@ class _File:
         own, changed = meaning(self._text.functions[name]), meaning(now.functions[name])
         said = {BY_SIGN: without_zero_signs, BY_ORDER: without_order}
         return next((reason for reason, of in said.items() if of(own) == of(changed)), None)
+
+    def beside(self, change: Change) -> tuple[str, str, dict[str, str]]:
+        """As Listed has it."""
+        now = self._changed(change)
+        lines = set(self._text.differs_in(now))
+        of_rows = {variant.source: row.reason for variant, row in self._variants
+                   if lines.intersection(self._text.differs_in(variant))}
+        return self._text.source, now.source, of_rows
 
     def _changed(self, change: Change) -> _Text:
         start, end, text = change

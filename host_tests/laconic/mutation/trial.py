@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from laconic.errors import ResultFails
+from laconic.mutation.compiled import Compiled
 from laconic.mutation.operators import Mutant
-from laconic.mutation.programs import FOLDERS, Family, Program, Unit, link
-from laconic.paths import SOURCE_DIR, build_dir
+from laconic.mutation.programs import Family, Program, Unit, link
 
 START_S = 0.005  # that any program takes, however little it does
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-sanitize=vptr", "-O1")
@@ -34,35 +33,19 @@ class Outcome:
 
 
 class Trials:
-    """What all trials share: families, what an unchanged file is compiled to, and which programs killed before."""
+    """What all trials share: what the files are compiled to, and which programs killed before."""
 
-    def __init__(self, families: list[Family], folder: Path):
-        self.families, self.folder = families, folder
+    def __init__(self, compiled: Compiled):
+        self.compiled = compiled
         self._kills: dict[str, Counter[str]] = defaultdict(Counter)
-        self._plain: dict[tuple[str, str], bytes] = {}
         self._lock = threading.Lock()
-        self._untouched = self._copied("untouched")
-        self._includes = inclusions({unit.source.resolve() for family in families for unit in family.library_units
-                                     if build_dir().resolve() in unit.source.resolve().parents})
-
-    def tree(self, number: int) -> Path:
-        """A copy of the sources in which one thread makes its faults."""
-        return self._copied(f"tree{number}")
-
-    def _copied(self, name: str) -> Path:
-        copy = self.folder / name
-        for part in FOLDERS:
-            shutil.copytree(SOURCE_DIR / part, copy / part, dirs_exist_ok=True,
-                            ignore=lambda folder, names: [name for name in names if (Path(folder) / name).is_file()
-                                                          and not name.endswith((".c", ".h"))])
-        return copy
 
     def outcome(self, mutant: Mutant, tree: Path) -> Outcome:
         """Tries it in that copy of the sources."""
         began = time.monotonic()
         changed = tree / mutant.file
         source = changed.read_bytes()
-        units = self._of(mutant)
+        units = self.compiled.units_of(mutant.file)
         if not units:  # else it would count as the same code
             raise ResultFails(f"{mutant.file}: no test program is made of it, so that its mutants would tell nothing")
         changed.write_bytes(mutant.applied_to(source))
@@ -74,25 +57,21 @@ class Trials:
 
     def libraries_of(self, mutant: Mutant) -> list[tuple[Family, list[Unit]]]:
         """The families in whose libraries its file is, with its units there."""
-        units = self._of(mutant)
+        units = self.compiled.units_of(mutant.file)
         found = [(family, [unit for unit in units if unit in family.library_units])
-                 for family in self._families_of(mutant)]
+                 for family in self.compiled.families_of(mutant.file)]
         return [(family, of) for family, of in found if of]
-
-    def _families_of(self, mutant: Mutant) -> list[Family]:
-        """The FMU's tests are for its own files: those of the core have theirs."""
-        return [family for family in self.families if family.name.startswith("fmu_") == is_of_fmu(mutant.file)]
 
     def _tried(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str]:
         differs = False
-        for family in self._families_of(mutant):
+        for family in self.compiled.families_of(mutant.file):
             objects: dict[Unit, Path] = {}
             for stage, programs in self._stages(mutant, family):
                 for unit in stage:
                     out = tree / f"{family.name}_{unit.target}_{unit.source.name}.o"
                     if unit.compile(tree, out).returncode != 0:
                         return "invalid", ""
-                    if out.read_bytes() != self._plain_of(unit, tree):
+                    if out.read_bytes() != self.compiled.plain_of(unit, tree):
                         objects[unit] = out
                 differs |= bool(objects)
                 if objects and (by := self._noticed(mutant, family, objects, tree, programs)):
@@ -104,7 +83,7 @@ class Trials:
     def _stages(self, mutant: Mutant, family: Family) -> Iterator[tuple[list[Unit], set[str]]]:
         """What is compiled, and which programs then run: first the library and the programs that do not include the
         mutant's file themselves. Most faults are noticed by these, so that the others need not be compiled."""
-        units = self._of(mutant)
+        units = self.compiled.units_of(mutant.file)
         include = {program.name for program in family.programs if set(units).intersection(program.units)}
         every = {program.name for program in family.programs}
         yield [unit for unit in units if unit in family.library_units], every - include
@@ -175,61 +154,8 @@ class Trials:
 
         return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -noticed_per_second(each)))
 
-    def _of(self, mutant: Mutant) -> list[Unit]:
-        """The units that its file is in. Lanes have the methods' text, too, but are not compiled anew."""
-        every = [unit for family in self._families_of(mutant)
-                 for unit in [*family.library_units, *(unit for program in family.programs for unit in program.units)]]
-        path = (SOURCE_DIR / mutant.file).resolve()
-        if path.suffix == ".c":
-            found = [unit for unit in every if unit.source.resolve() == path]
-        else:
-            users = self._includes[path]
-            found = [unit for unit in every if unit.source.resolve() in users and "/batch/" not in str(unit.source)]
-        return list(dict.fromkeys(found))
-
-    def _plain_of(self, unit: Unit, tree: Path) -> bytes:
-        """What it is compiled to without a fault: for a header's mutant that many units have, only when it is their
-        turn."""
-        name = (unit.target, str(unit.source))
-        with self._lock:
-            known = self._plain.get(name)
-        if known is not None:
-            return known
-        out = tree / "plain.o"
-        done = unit.compile(self._untouched, out)
-        if done.returncode != 0:
-            raise ResultFails(f"{unit.source}: does not compile without a fault: {done.stderr[-300:]!r}")
-        with self._lock:
-            return self._plain.setdefault(name, out.read_bytes())
-
 
 def runtime_of_sanitizers(family: Family) -> list[Path]:
     """It must be loaded before anything else."""
     said = subprocess.run([*family.compiler, "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
     return [Path(said.stdout.strip()).resolve()]
-
-
-def is_of_fmu(file: str) -> bool:
-    """Whether the tests around the FMU's models are those of this file."""
-    return file.startswith("fmu/")
-
-
-def inclusions(generated: Iterable[Path] = ()) -> dict[Path, set[Path]]:
-    """The C files that include a header, by the header: by way of others, too. Those that the build has made count."""
-    sources = [*(path for folder in FOLDERS for path in (SOURCE_DIR / folder).rglob("*.[ch]")), *generated]
-    named: dict[str, list[Path]] = defaultdict(list)
-    for path in sources:
-        named[path.name].append(path.resolve())
-    direct = {path.resolve(): {found for name in re.findall(r'^\s*#\s*include "([^"]+)"', path.read_text("utf-8"),
-                                                            re.MULTILINE)
-                               for found in named[Path(name).name] if str(found).endswith(name.replace("../", ""))}
-              for path in sources}
-    users: dict[Path, set[Path]] = defaultdict(set)
-    for path in direct:
-        seen, todo = set[Path](), [path]
-        while todo:
-            for found in direct[todo.pop()] - seen:
-                seen.add(found)
-                todo.append(found)
-                users[found].add(path)
-    return users

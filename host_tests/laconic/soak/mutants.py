@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput
-from laconic.mutation import Campaign, Listed, Mutant, Tally, read_equivalents, read_faults
-from laconic.paths import SOURCE_DIR, sources_missing
+from laconic.mutation import Campaign, Compiled, Listed, Mutant, SameCode, Tally, read_equivalents, read_faults
+from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 from laconic.soak import StoppedEarly
 
 OPTIONS = ("sample", "survivors", "only", "faults")
@@ -26,7 +26,7 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: in
     if faults is not None:
         if sample is not None or only is not None:
             raise BadInput(f"--faults {faults}: asks about each of its lines; leave out --sample and --only")
-        return asked(faults, most)
+        return asked(faults, most, lambda share: advance(60.0 * minutes * share))
     campaign = Campaign(only, seed)
     began = last = time.monotonic()
 
@@ -43,15 +43,22 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: in
         raise StoppedEarly(told(campaign.tally, len(campaign.mutants), most)) from stopped
 
 
-def asked(faults: Path, most: int) -> dict[str, Any]:
-    """What the list says of each fault of a file; no test is run."""
+def asked(path: Path, most: int, advance: Callable[[float], None]) -> dict[str, Any]:
+    """What the list says of each fault of a file, by its text or by what it is compiled to; no test is run."""
     if missing := sources_missing():
         raise BadInput(f"soak mutants: needs {missing}")
-    listed = Listed(read_equivalents(), SOURCE_DIR)
-    reasons = [(fault, listed.reason(fault.file, fault.change)) for fault in read_faults(faults)]
-    outside = [str(fault) for fault, reason in reasons if reason is None]
-    return {"passed": len(outside) <= most, "faults": len(reasons), "outside the list": outside,
-            "in the list": [f"{fault}: {reason}" for fault, reason in reasons if reason is not None]}
+    faults, listed = read_faults(path), Listed(read_equivalents(), SOURCE_DIR)
+    compiled = Compiled.of((fault.file for fault in faults), build_dir().resolve() / "mutation" / "asked")
+    by_code = SameCode(listed, compiled)
+    outside, within = [], []
+    for fault in faults:
+        reason = listed.reason(fault.file, fault.change) or by_code.reason(fault.file, fault.change)
+        if reason is None:
+            outside.append(str(fault))
+        else:
+            within.append(f"{fault}: {reason}")
+        advance(1.0 / len(faults))
+    return {"passed": len(outside) <= most, "faults": len(faults), "outside the list": outside, "in the list": within}
 
 
 def told(tally: Tally, all_of_them: int, most: int) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from laconic.mutation.compiled import Compiled
 from laconic.mutation.programs import Family, Program, Unit
 from laconic.mutation.trial import Trials
 
@@ -22,9 +23,9 @@ def trials_of(tmp_path, monkeypatch):
         (sources / "core_c").mkdir(parents=True)
         for file, text in (library | tests).items():
             (sources / "core_c" / file).write_text(text)
-        for module in ("trial", "programs", "results"):
+        for module in ("compiled", "programs", "results"):
             monkeypatch.setattr(f"laconic.mutation.{module}.SOURCE_DIR", sources)
-        monkeypatch.setattr("laconic.mutation.trial.FOLDERS", ("core_c",))
+        monkeypatch.setattr("laconic.mutation.compiled.FOLDERS", ("core_c",))
         units = {}
         for file in (each for each in library | tests if each.endswith(".c")):
             name = Path(file).stem
@@ -41,6 +42,6 @@ def trials_of(tmp_path, monkeypatch):
         family.link()
         family.check()
         monkeypatch.setattr("laconic.mutation.programs.PATIENCE_S", 0.5)
-        return Trials([family], tmp_path), sources
+        return Trials(Compiled([family], tmp_path)), sources
 
     return make

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from laconic.mutation import campaign
+from laconic.mutation import campaign, compiled
 from laconic.mutation.campaign import Campaign
 from laconic.mutation.equivalent import Equivalent
 
@@ -30,7 +30,7 @@ def campaign_of(trials_of, monkeypatch, tmp_path):
     monkeypatch.setattr(campaign, "SOURCE_DIR", sources)
     monkeypatch.setattr(campaign, "files_of", lambda _: ["core_c/larger.c"])
     monkeypatch.setattr(campaign, "sources_missing", lambda: None)
-    monkeypatch.setattr(campaign, "families", lambda *_: trials.families)
+    monkeypatch.setattr(compiled, "families", lambda *_: trials.compiled.families)
     monkeypatch.setattr(campaign, "MANY", 2)
 
     def make(listed: list[Equivalent]) -> Campaign:
@@ -52,7 +52,7 @@ def test_with_time_all_are_tried_once_and_kept(campaign_of, monkeypatch):
     tally = first.run(None, math.inf, tried.append)
     assert tally.total.total() == len(first.mutants) == len(tried)
     assert tally.total["killed"] > 0 and {each.function for each in tally.survivors} >= {"lost"}
-    monkeypatch.setattr(campaign, "families", lambda *_: pytest.fail("all is known"))
+    monkeypatch.setattr(compiled, "families", lambda *_: pytest.fail("all is known"))
     assert campaign_of([]).run(None, math.inf, tried.append).total == tally.total
 
 

@@ -77,8 +77,11 @@ def test_a_row_of_one_function_says_nothing_of_another(tmp_path):
 @pytest.fixture
 def project(tmp_path, monkeypatch):
     (tmp_path / "a.c").write_text(SOURCE)
-    for module in ("laconic.mutation.faults", "laconic.soak.mutants"):
-        monkeypatch.setattr(f"{module}.SOURCE_DIR", tmp_path)
+    for module in ("faults", "compiled"):
+        monkeypatch.setattr(f"laconic.mutation.{module}.SOURCE_DIR", tmp_path)
+    monkeypatch.setattr("laconic.mutation.compiled.FOLDERS", ())
+    monkeypatch.setattr("laconic.mutation.compiled.families", lambda *_: [])
+    monkeypatch.setattr("laconic.soak.mutants.SOURCE_DIR", tmp_path)
     monkeypatch.setattr("laconic.soak.mutants.read_equivalents", lambda: ROWS)
     return tmp_path
 
@@ -89,8 +92,9 @@ def test_another_samplers_faults_are_told_with_their_reason_or_as_outside(projec
             {"file": "a.c", "start": minus, "end": minus + 1, "text": "*"}]
     path = project / "faults.jsonl"
     path.write_text("\n".join(map(json.dumps, rows)) + "\n\n")
-    said = soak(1.0, 1, lambda _: None, faults=path)
-    assert not said["passed"] and said["faults"] == 2
+    came: list[float] = []
+    said = soak(1.0, 1, came.append, faults=path)
+    assert not said["passed"] and said["faults"] == 2 and came == [30.0, 30.0]
     assert said["outside the list"] == ["a.c:10:20: -  →  *"]
     assert said["in the list"] == ["a.c:6:11: >  →  >=: At 7 it is 7."]
     assert soak(1.0, 1, lambda _: None, survivors=1, faults=path)["passed"]

@@ -51,14 +51,14 @@ def small(trials_of):
 
 
 def noticed(trials, mutants: list[Mutant], is_over=lambda: False) -> dict[Mutant, str]:
-    bench = bench_of(mutants, trials.libraries_of(mutants[0]), trials.tree(0))
+    bench = bench_of(mutants, trials.libraries_of(mutants[0]), trials.compiled.tree(0))
     assert bench is not None
     return {mutant: outcome.verdict for mutant, outcome in bench.noticed(is_over)}
 
 
 def test_what_is_noticed_behind_switches_is_noticed_alone_and_nothing_else_there(small):
     trials, mutants = small
-    found, tree = noticed(trials, mutants), trials.tree(1)
+    found, tree = noticed(trials, mutants), trials.compiled.tree(1)
     placed = Switched.of(SOURCE.encode(), mutants).places
     alone = {mutant: trials.outcome(mutant, tree).verdict for mutant in mutants}
     assert {mutant: alone[mutant] for mutant in found} == found
@@ -83,14 +83,14 @@ def test_a_fault_that_does_not_compile_is_left_out_and_the_others_stay(trials_of
              for text in ("*it", "it->b", "it->a + 1")]
     found = noticed(trials, wrong)
     assert {mutant.text for mutant in found} == {"it->a + 1"}
-    assert (trials.folder / "tree0" / FILE).read_text() == (sources / FILE).read_text()
+    assert (trials.compiled.folder / "tree0" / FILE).read_text() == (sources / FILE).read_text()
 
 
 def test_a_file_that_takes_the_compiler_too_long_has_no_bench(small, monkeypatch):
     trials, mutants = small
     monkeypatch.setattr("laconic.mutation.switches.COMPILER_S", 0)
-    assert bench_of(mutants, trials.libraries_of(mutants[0]), trials.tree(0)) is None
-    assert (trials.folder / "tree0" / FILE).read_text() == SOURCE
+    assert bench_of(mutants, trials.libraries_of(mutants[0]), trials.compiled.tree(0)) is None
+    assert (trials.compiled.folder / "tree0" / FILE).read_text() == SOURCE
 
 
 def test_a_bench_ends_when_it_is_over(small):

@@ -32,7 +32,7 @@ def trials(trials_of):
 
 
 def verdicts(trials: Trials, sources: Path) -> dict[str, str]:
-    tree = trials.tree(0)
+    tree = trials.compiled.tree(0)
     return {f"{mutant.before} → {mutant.after}": trials.outcome(mutant, tree).verdict
             for mutant in mutants_of(sources, "core_c/limited.c")}
 
@@ -56,7 +56,7 @@ def test_a_program_that_needs_nothing_of_the_library_runs_beside_a_fault_that_do
     test = """#include "limit.h"\nint main(int count, char **words) { (void)words; return limit(count + 8) != 5; }\n"""
     tried, sources = trials_of(library, {"test_limit.c": test})
     fault = next(each for each in mutants_of(sources, "core_c/limit.h") if "a > 6" in each.after)
-    assert tried.outcome(fault, tried.tree(0)).verdict == "survived"
+    assert tried.outcome(fault, tried.compiled.tree(0)).verdict == "survived"
 
 
 def test_what_only_the_sanitizers_notice_is_told_apart(trials_of):
@@ -66,20 +66,21 @@ def test_what_only_the_sanitizers_notice_is_told_apart(trials_of):
     test = """int filled(int with);\nint main(void) { return filled(2) != 4; }\n"""
     tried, sources = trials_of({"filled.c": source}, {"test_filled.c": test})
     longer = next(each for each in mutants_of(sources, "core_c/filled.c") if "k <= 2" in each.after)
-    found = tried.outcome(longer, tried.tree(0))
+    found = tried.outcome(longer, tried.compiled.tree(0))
     assert (found.verdict, found.by) == ("sanitizers", "test_filled_double")
 
 
 def test_the_sources_are_as_before(trials):
     verdicts(*trials)
     assert (trials[1] / "core_c/limited.c").read_text() == SOURCE
-    assert (trials[0].folder / "tree0/core_c/limited.c").read_text() == SOURCE
+    assert (trials[0].compiled.folder / "tree0/core_c/limited.c").read_text() == SOURCE
 
 
 def test_the_same_code_is_the_same_in_any_copy_of_the_sources(trials):
     tried, sources = trials
     alike = next(each for each in mutants_of(sources, "core_c/limited.c") if "a / 1" in each.after)
-    assert [tried.outcome(alike, tried.tree(number)).verdict for number in range(2)] == ["same code", "same code"]
+    trees = map(tried.compiled.tree, range(2))
+    assert [tried.outcome(alike, tree).verdict for tree in trees] == ["same code", "same code"]
 
 
 def test_a_result_holds_until_its_file_changes_and_a_survivor_until_the_tests_do(tmp_path, monkeypatch):

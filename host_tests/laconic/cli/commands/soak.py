@@ -140,4 +140,7 @@ def _show(result: dict[str, Any], json_wanted: bool) -> None:
         return
     console = Console()
     for name, value in result.items():
-        console.print(f"{name:>24}  {value}", markup=False, soft_wrap=True)
+        lines = value if isinstance(value, list) and all(isinstance(each, str) for each in value) else [value]
+        for line in lines or ["none"]:
+            console.print(f"{name:>24}  {line}", markup=False, soft_wrap=True)
+            name = ""
