@@ -33,10 +33,11 @@ class Identity:
 
 class NodeClient:
     """Commands and their answers, one at a time: a command is sent again until it is answered, and the node acts on it
-    once. Every other frame that comes meanwhile goes to `others`. `random_bits` chooses the session numbers."""
+    once. Every other frame that comes meanwhile goes to `others`. `random_bits` chooses the session numbers: by
+    default those of `secrets`, which nobody foretells."""
 
-    def __init__(self, link: Link, timeout_s: float = 1.0, *, random_bits: Callable[[int], int] = secrets.randbits):
-        self.link, self.timeout_s, self._random_bits = link, timeout_s, random_bits
+    def __init__(self, link: Link, timeout_s: float = 1.0, *, random_bits: Callable[[int], int] | None = None):
+        self.link, self.timeout_s, self._random_bits = link, timeout_s, random_bits or secrets.randbits
         self.wire = wire()
         self.identity: Identity | None = None
         self.state = self.found = "empty"  # now; as the last session found it
