@@ -133,19 +133,26 @@ def _without_length(node: Node) -> Meaning:
 
 def without_growth(before: Meaning, after: Meaning) -> Meaning:
     """`after` with the lengths of `before` for every array of it that is only longer, and whose size nothing asks."""
-    asked = repr([each for each in within(before) if each[0] == "sizeof_expression" or _is_macro(each)
-                  or each[:2] == ("pointer_expression", ("&", "&")) and each[2][0] == "identifier"
+    asked = repr([_without_elements(each) for each in within(before) if each[0] == "sizeof_expression"
+                  or _is_macro(each) or each[:2] == ("pointer_expression", ("&", "&")) and each[2][0] == "identifier"
                   or each[0] == "init_declarator" and each[-1][0] == "string_literal"])
 
     def shortened(before: Meaning, after: Meaning) -> Meaning:
         if len(before) != len(after) or before[0] != after[0]:
             return after
         if before[0] == "array_declarator" and before[1] == after[1] and before[1][0] == "identifier":
-            return before if repr(before[1]) not in asked and _is_longer(after[3], before[3]) else after
+            return before if repr(before[1]) not in asked and is_longer(after[3], before[3]) else after
         return after[0], *(shortened(one, other) if isinstance(one, tuple) and isinstance(other, tuple) else other
                            for one, other in zip(before[1:], after[1:], strict=True))
 
     return shortened(before, after)
+
+
+def _without_elements(of: Meaning) -> Meaning:
+    """The same where an element of an array is only where it is."""
+    if of[0] == "subscript_expression" and of[1][0] == "identifier":
+        return of[0], *map(_without_elements, of[2:])
+    return tuple(_without_elements(each) if isinstance(each, tuple) else each for each in of)
 
 
 def _is_macro(called: Meaning) -> bool:
@@ -167,20 +174,19 @@ def within(of: Meaning) -> Iterator[Meaning]:
             yield from within(each)
 
 
-def _is_longer(length: Meaning, than: Meaning) -> bool:
-    """By its text: a larger number, or the same and something more."""
+def is_longer(length: Meaning, than: Meaning) -> bool:
+    """By its text: a larger number, or the same and something more, or made so of what is longer."""
     if length[0] == than[0] == "number":
         return _count(length) > _count(than)
+    if than[0] == "-" and than[1] == length and than[2][0] == "number":  # N - 1 becomes N
+        return _count(than[2]) > 0
     if length[0] not in ("+", "*") or len(length) != 3:
         return False
-    numbers = [each for each in length[1:] if each[0] == "number"]
-    rest = [each for each in length[1:] if each[0] != "number"]
-    if len(numbers) != 1 or _count(numbers[0]) < 1:
-        return False
-    if length[0] == "+" and than[0] == "+":  # N + 3 becomes N + 6
-        fewer = any(each[0] == "number" and _count(each) < _count(numbers[0]) for each in than[1:])
-        return fewer and rest[0] in than[1:]
-    return rest == [than]
+    pairs = [(length[1], length[2]), (length[2], length[1])]
+    if length[0] == than[0] and len(than) == 3:  # N + 3 becomes N + 6
+        return any(one == there and is_longer(more, other)
+                   for one, more in pairs for there, other in (than[1:], than[:0:-1]))
+    return any(one == than and more[0] == "number" and _count(more) > 0 for one, more in pairs)
 
 
 def _count(number: Meaning) -> int:

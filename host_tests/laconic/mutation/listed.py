@@ -1,7 +1,8 @@
 """Whether a fault is in the list of equivalents, however it is spelled: the text is what a row makes of it, or the
-function is, by the laws of alike.py, as it was or as a row makes it. Such a fault no test can notice. Three more things
+function is, by the laws of alike.py, as it was or as a row makes it. Such a fault no test can notice. Four more things
 are said of what no test has noticed, where tests notice the other faults of the place: a row with `…`, which stands for
-any text, that a zero may have either sign, and that the order of some statements says nothing (order.py)."""
+any text, that a zero may have either sign, that the order of some statements says nothing (order.py), and that an array
+may be longer (lengths.py)."""
 
 from __future__ import annotations
 
@@ -15,16 +16,21 @@ from tree_sitter import Node
 
 from laconic.mutation.alike import Meaning, meaning, without_growth, without_zero_signs
 from laconic.mutation.equivalent import Equivalent
+from laconic.mutation.lengths import Asked, grown
 from laconic.mutation.operators import Change, name_of, parsed
 from laconic.mutation.order import without_order
+from laconic.mutation.programs import FOLDERS
 
 NO_CODE = "It changes no code: its bytes are of a comment or of spaces."
 BY_LAW = "C reads both alike: a law of laconic/mutation/alike.py."
 BY_SIGN = "Only a zero has another sign, and of that nothing is promised."
+BY_LENGTH = "Only an array is longer, and nothing asks its length: as much of it is used as before."
 BY_ORDER = "Only the order of statements is another, of which none names what the other writes, or one is there twice."
 ANYTHING = "…"
 LINES = 6
 """That a row may be of."""
+NO_PRODUCT = {"tests", "fuzz", "proof", "campaign"}
+"""Folders of what asks about the product."""
 
 
 class Listed:
@@ -40,7 +46,7 @@ class Listed:
     def reason(self, file: str, change: Change) -> str | None:
         """Why a change of a file that no test has noticed is no fault; None where the list does not say it."""
         of = self._of(file)
-        return of.reason(change) or of.reason_of_survivor(change)
+        return of.reason(change) or of.reason_of_survivor(change) or self._by_length(file, change)
 
     def beside(self, file: str, change: Change) -> tuple[str, str, dict[str, str]]:
         """The file without comments as it stands and with the change; what the rows make of the same lines, each with
@@ -50,6 +56,16 @@ class Listed:
     def no_test_can_notice(self, file: str, change: Change) -> bool:
         """Whether the list says so, whatever tests there are."""
         return self._of(file).reason(change) is not None
+
+    def _by_length(self, file: str, change: Change) -> str | None:
+        names = self._of(file).longer_arrays(change)
+        return BY_LENGTH if names and not names.intersection(self._lengths.by(file)) else None
+
+    @cached_property
+    def _lengths(self) -> Asked:
+        paths = (path for folder in FOLDERS for path in (self._root / folder).rglob("*.[ch]"))
+        product = (path for path in paths if not NO_PRODUCT.intersection(path.relative_to(self._root).parts))
+        return Asked({path.relative_to(self._root).as_posix(): path.read_text(encoding="utf-8") for path in product})
 
     def _of(self, file: str) -> _File:
         if file not in self._files:
@@ -138,6 +154,11 @@ class _File:
         own, changed = meaning(self._text.functions[name]), meaning(now.functions[name])
         said = {BY_SIGN: without_zero_signs, BY_ORDER: without_order}
         return next((reason for reason, of in said.items() if of(own) == of(changed)), None)
+
+    def longer_arrays(self, change: Change) -> set[str] | None:
+        """Of what alone it changes the length, if it does nothing else."""
+        own, now = (meaning(parsed(text.source.encode()).root_node) for text in (self._text, self._changed(change)))
+        return grown(own, now)
 
     def beside(self, change: Change) -> tuple[str, str, dict[str, str]]:
         """As Listed has it."""

@@ -79,14 +79,14 @@ def test_these_are_not(one, other):
 
 
 @pytest.mark.parametrize(("longer", "is_alike"), [
-    ("int t[4]", True), ("int t[N + 3]", False), ("int t[2]", False), ("int t[3 + 1]", False), ("long t[4]", False)])
+    ("int t[4]", True), ("int t[N + 3]", False), ("int t[2]", False), ("int t[3 + 1]", True), ("long t[4]", False)])
 def test_an_array_of_a_function_may_be_longer(longer, is_alike):
     before, after = told("int t[3] = {0}; return p->f(&t[a]);"), told(f"{longer} = {{0}}; return p->f(&t[a]);")
     assert before != after and (without_growth(before, after) == before) is is_alike
 
 
 @pytest.mark.parametrize(("length", "is_alike"), [
-    ("N + 3", True), ("N * 2", True), ("2 * N", True), ("N", True), ("N - 1", False), ("N / 2", False),
+    ("N + 3", True), ("N * 2", True), ("2 * N", True), ("N", True), ("2 + N", True), ("N - 1", False), ("N / 2", False),
     ("N * 0", False), ("M + 3", False)])
 def test_an_array_of_a_named_length_grows_by_it(length, is_alike):
     before, after = told("int t[N]; return t[a];"), told(f"int t[{length}]; return t[a];")
@@ -98,6 +98,17 @@ def test_an_array_of_a_named_length_grows_by_it(length, is_alike):
 @pytest.mark.parametrize("size", ["sizeof t", "sizeof(t) / sizeof(t)[0]", "COUNT(t)", "*(&t + 1) - t"])
 def test_where_something_asks_its_size_it_may_not(size):
     before, after = told(f"int t[3]; return {size};"), told(f"int t[4]; return {size};")
+    assert without_growth(before, after) != before
+
+
+@pytest.mark.parametrize("element", ["WHERE(a, t[0], t[COUNT(u)])", "sizeof t[0]", "R(t[a])"])
+def test_where_an_element_alone_is_given_to_a_macro_it_may(element):
+    before, after = told(f"int t[3], u[2]; return {element};"), told(f"int t[4], u[2]; return {element};")
+    assert without_growth(before, after) == before
+
+
+def test_a_macro_that_is_given_an_array_for_an_index_may_ask_its_size():
+    before, after = told("int t[3]; return WHERE(u[COUNT(t)]);"), told("int t[4]; return WHERE(u[COUNT(t)]);")
     assert without_growth(before, after) != before
 
 
