@@ -183,10 +183,10 @@ def is_longer(length: Meaning, than: Meaning) -> bool:
     if length[0] not in ("+", "*") or len(length) != 3:
         return False
     pairs = [(length[1], length[2]), (length[2], length[1])]
-    if length[0] == than[0] and len(than) == 3:  # N + 3 becomes N + 6
-        return any(one == there and is_longer(more, other)
-                   for one, more in pairs for there, other in (than[1:], than[:0:-1]))
-    return any(one == than and more[0] == "number" and _count(more) > 0 for one, more in pairs)
+    if any(one == than and more[0] == "number" and _count(more) > 0 for one, more in pairs):
+        return True
+    return length[0] == than[0] and len(than) == 3 and any(  # N + 3 becomes N + 6
+        one == there and is_longer(more, other) for one, more in pairs for there, other in (than[1:], than[:0:-1]))
 
 
 def _count(number: Meaning) -> int:

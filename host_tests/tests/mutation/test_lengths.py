@@ -26,7 +26,7 @@ def told(text: str):
 @pytest.mark.parametrize(("before", "after", "names"), [
     ("plain[3]", "plain[4]", {"plain"}), ("N - 1", "N", {"asked"}), ("N - 1", "N - 0", None),
     ("plain[3]", "plain[2]", None), ("N - 1", "N + 1", None), ("grid[2]", "grid[5]", {"grid"}),
-    ("(N + 1)", "(N + 2)", {"grid"}),
+    ("(N + 1)", "(N + 2)", {"grid"}), ("(N + 1)", "(N + 1 + 1)", {"grid"}),
     ("P * (", "(1 + P) * (", {"grid"}), ("N + 1", "M + 2", None), ("own[3]", "own[3 * 2]", {"own"}),
     ("table[]", "table[3]", None), ("plain[3], asked", "plain[4], other", None), ("[0][0]", "[0][1]", None),
     ("{1, 2}, two[2]", "{1, 3}, two[3]", None), ("return", "return 1 +", None), (" r->plain", "(r->plain)", set())])
