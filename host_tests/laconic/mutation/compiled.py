@@ -21,6 +21,7 @@ class Compiled:
     def __init__(self, families: list[Family], folder: Path):
         self.families, self.folder = families, folder
         self._plain: dict[tuple[str, str], bytes] = {}
+        self._units: dict[str, list[Unit]] = {}
         self._lock = threading.Lock()
         self._untouched = self._copied("untouched")
         self._includes = inclusions({unit.source.resolve() for family in families for unit in family.library_units
@@ -50,6 +51,12 @@ class Compiled:
 
     def units_of(self, file: str) -> list[Unit]:
         """The units that a file is in. Lanes have the methods' text, too, but are not compiled anew."""
+        with self._lock:
+            if file not in self._units:
+                self._units[file] = self._found_units_of(file)
+            return self._units[file]
+
+    def _found_units_of(self, file: str) -> list[Unit]:
         every = [unit for family in self.families_of(file)
                  for unit in [*family.library_units, *(unit for program in family.programs for unit in program.units)]]
         path = (SOURCE_DIR / file).resolve()

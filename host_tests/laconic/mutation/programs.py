@@ -39,9 +39,9 @@ REMEDY = "run `cmake --build build --target laconic_unity_tests`"
 PATIENCE, PATIENCE_S = 20.0, 3.0  # so many times as long as without a fault, and so much more
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Unit:
-    """A source as one target compiles it."""
+    """A source as one target compiles it: itself alone, so that sets of many need not compare their commands."""
 
     source: Path
     target: str
