@@ -216,6 +216,8 @@ static void with_friction_no_method_but_auto_is_taken(void) {
     }
     method.name = "auto";
     ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &method, REAL(0.001), &start, &why));
+    TEST_ASSERT_EQUAL_STRING("friction", plant.integrator.chosen->name);
+    TEST_ASSERT_EQUAL_INT32(1, plant.integrator.chosen->order);
 }
 
 /* Wheels that hold begin as they roll: as fast as on ideal ground, and without slip they have turned as far. */
