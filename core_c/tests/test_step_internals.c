@@ -146,6 +146,12 @@ static void growth_beyond_the_forcing_is_not(void) {
     TEST_ASSERT_FALSE(growth_is_supplied_by(REAL(1), REAL(1), REAL(1), REAL(0.2)));
 }
 
+/* 2⁻¹⁰ of |ζ|² before and after: ζ may grow to the root of 1025/1023, which is 1.000977. */
+static void growth_by_a_thousandth_of_the_energy_is_allowed(void) {
+    TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(0), REAL(0), REAL(0), REAL(0.000975)));
+    TEST_ASSERT_FALSE(growth_is_supplied_by(REAL(0), REAL(0), REAL(0), REAL(0.000979)));
+}
+
 static void a_loss_is_always_allowed(void) {
     TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(0), REAL(0), REAL(0), REAL(-0.2)));
 }
@@ -164,6 +170,7 @@ int main(void) {
     RUN_TEST(a_force_fixed_in_the_world_rotates_against_the_body);
     RUN_TEST(growth_that_the_forcing_supplies_is_allowed);
     RUN_TEST(growth_beyond_the_forcing_is_not);
+    RUN_TEST(growth_by_a_thousandth_of_the_energy_is_allowed);
     RUN_TEST(a_loss_is_always_allowed);
     RUN_TEST(nan_is_not_passive);
     return UNITY_END();
