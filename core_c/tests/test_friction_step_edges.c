@@ -182,6 +182,45 @@ static void a_motion_too_slow_to_be_squared_goes_by_its_mean(void) {
     ASSERT_NEAR(0.01, 1, (double)plant.state.x_m.value / (0.5 * step_s * 0.04 * speed));
 }
 
+/* A body that slides on its only wheel and turns across the slope: by its mean velocity it would gain, over speed and
+ * pull, 1.005 of GROWTH_IN_DOUBT in the last of these steps, and from the other heading 0.995 of it. */
+static void what_grows_by_more_than_is_in_doubt_goes_by_the_velocity_at_the_end(void) {
+    const laconic_input coasting = no_input();
+    const double times = EITHER(1, 200), step_s = 1.7e-4 * times;
+    const double heading[2] = {EITHER(-0.0613, -0.2587), EITHER(-0.0608, -0.2571)};
+    for (int in_doubt = 0; in_doubt < 2; in_doubt++) {
+        laconic_vehicle v = {0};
+        laconic_start start = start_with(0.00085 * times, 0.006 * times, 0.00384 * times);
+        laconic_plant plant;
+        v.mass_kg = REAL(9.5);
+        v.yaw_inertia_kgm2 = REAL(4.4);
+        v.wheel_radius_m = REAL(0.8);
+        v.wheel_inertia_kgm2 = REAL(0.34);
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 1.9, 0, 0, PI / 2);
+        v.ground.friction_coefficient = REAL(0.05);
+        v.ground.axle_friction_Nm = 250;
+        v.ground.slope_rad = REAL(0.0166);
+        start.heading_rad = REAL(heading[in_doubt]);
+        start.wheel_speed_rad_per_s[0] = REAL(0.011 * times);
+        memset(&plant, 0, sizeof plant);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(step_s), &start, &why));
+        run(&plant, &coasting, EITHER(24, 33));
+        const laconic_plant before = plant;
+        run(&plant, &coasting, 1);
+        laconic_pose pose;
+        laconic_real end[2];
+        laconic_pose_of(&pose, &plant.model, &plant.state);
+        laconic_body_velocity(&plant.model, &plant.state, end);
+        const double cosine = cos((double)pose.heading_rad), sine = sin((double)pose.heading_rad);
+        const double way = (double)plant.state.x_m.value - (double)before.state.x_m.value;
+        const double at_end = step_s * (cosine * (double)end[0] - sine * (double)end[1]);
+        if (in_doubt)
+            TEST_ASSERT_TRUE(way > 1.01 * at_end);
+        else
+            ASSERT_NEAR(1e-4 * at_end, at_end, way);
+    }
+}
+
 /* Metres and radians together have one bound: what one step of so fast a body adds must fit its heading. */
 static void a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused(void) {
     const laconic_input coasting = no_input();
@@ -271,6 +310,7 @@ int main(void) {
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
     RUN_TEST(a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow);
     RUN_TEST(a_motion_too_slow_to_be_squared_goes_by_its_mean);
+    RUN_TEST(what_grows_by_more_than_is_in_doubt_goes_by_the_velocity_at_the_end);
     RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
     RUN_TEST(the_bound_of_metres_and_radians_is_beyond_what_a_step_may_add);
     RUN_TEST(a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused);

@@ -161,6 +161,21 @@ static void nan_is_not_passive(void) {
     TEST_ASSERT_FALSE(growth_is_supplied_by(NOT_A_NUMBER, REAL(2), REAL(2), REAL(0.2)));
 }
 
+/* ------------------------------------------------------------------------------------ rest -- */
+
+/* Half of the last place of AT_REST, which is 1e-150 or 1e-18. */
+static void what_is_left_of_a_motion_ends_where_its_square_is_still_a_normal_number(void) {
+    laconic_sum sums[3];
+    memset(sums, 0, sizeof sums);
+    sums[0].value = REAL(EITHER(4e-166, 2e-25));
+    sums[1].value = REAL(EITHER(4e-167, 2e-26));
+    sums[2].value = -sums[1].value;
+    flush_decayed(sums);
+    TEST_ASSERT_TRUE(sums[0].value > 0);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)sums[1].value);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)sums[2].value);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(everything_that_acts_is_in_the_forcing);
@@ -173,5 +188,6 @@ int main(void) {
     RUN_TEST(growth_by_a_thousandth_of_the_energy_is_allowed);
     RUN_TEST(a_loss_is_always_allowed);
     RUN_TEST(nan_is_not_passive);
+    RUN_TEST(what_is_left_of_a_motion_ends_where_its_square_is_still_a_normal_number);
     return UNITY_END();
 }
