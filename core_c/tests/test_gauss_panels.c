@@ -66,6 +66,17 @@ static void when_all_has_died_out_the_rest_of_the_step_is_one_panel(void) {
     ASSERT_NEAR(ROUNDING * 1e-4, PANEL_DECAY * REAL(0.5e-4), half.first_share);
 }
 
+/* After 18 decay times, in single 12, of the slower axis: of 32 first stretches, or of 64 where these end a little before
+ * that. */
+static void an_axis_has_died_out_after_so_many_decay_times(void) {
+    const double fast = 1000, reached = 32 * EITHER(3 * 0.375, 0.5) / fast; /* of the slow axis, by its decay */
+    const laconic_integrator dead = with_panels(REAL(EITHER(18.01, 12.01) / reached), 0, REAL(fast));
+    const laconic_integrator alive = with_panels(REAL(EITHER(17.99, 11.99) / reached), 0, REAL(fast));
+    TEST_ASSERT_TRUE(dead.has_rest && alive.has_rest);
+    ASSERT_NEAR(ROUNDING, 32, end_of(dead.stretches));
+    ASSERT_NEAR(ROUNDING, 64, end_of(alive.stretches));
+}
+
 /* An axis on which the whole step is no longer than a panel may be has nothing that must die out before the rest. */
 static void an_axis_that_fits_one_panel_does_not_put_off_the_rest(void) {
     const laconic_integrator in = with_panels(PANEL_DECAY, 0, REAL(1000));
@@ -109,6 +120,7 @@ int main(void) {
     RUN_TEST(the_longest_step_of_one_panel_is_one);
     RUN_TEST(stretches_end_when_they_cover_the_step);
     RUN_TEST(when_all_has_died_out_the_rest_of_the_step_is_one_panel);
+    RUN_TEST(an_axis_has_died_out_after_so_many_decay_times);
     RUN_TEST(an_axis_that_fits_one_panel_does_not_put_off_the_rest);
     RUN_TEST(there_are_no_more_stretches_than_the_most);
     RUN_TEST(panels_of_other_methods_are_not_halved);
