@@ -123,9 +123,13 @@ typedef struct constraint_sums {
     vector pushed[3];
 } constraint_sums;
 
+/* A constraint is the same whatever its row's length. That of a locked wheel may be long, as R/R_i and 1/sin γ are, and
+ * so may a lever: beside the fourth power of their length the projector's own 1 would have no digits. */
 static void add_constraint_row(constraint_sums *sums, const laconic_model *m, vector row, vector change) {
-    add_products(sums->products, R(0.5), row, row);
-    for (int k = 0; k < 3; k++) sums->pushed[k] = added(sums->pushed[k], dot(change, axis_of(m, k)), row);
+    const real share = R(1) / size(row);
+    const vector short_row = scaled(share, row);
+    add_products(sums->products, R(0.5), short_row, short_row);
+    for (int k = 0; k < 3; k++) sums->pushed[k] = added(sums->pushed[k], share * dot(change, axis_of(m, k)), short_row);
 }
 
 static void sum_constraints(constraint_sums *sums, const laconic_model *m, const body_change *c,

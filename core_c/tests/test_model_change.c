@@ -69,9 +69,27 @@ static void the_change_of_a_constraint_is_that_of_its_wheel_whatever_its_number(
     }
 }
 
+/* A locked wheel holds the vehicle alike whatever its radius, though its row grows as the radius shrinks. */
+static void a_constraint_changes_alike_however_long_its_row_is(void) {
+    laconic_vehicle v = mecanum(), by = some_change_of(&v);
+    laconic_model_change change[4];
+    v.com_x_m = REAL(0.03);
+    v.wheel[0].locked = true;
+    for (int n = 0; n < 4; n++) {
+        v.wheel[0].own_radius_m = REAL(RADIUS * pow(10, -2 * n));
+        const laconic_model m = model_of(v);
+        change[n] = change_of(&m, &v, &by);
+        for (int i = 0; i < 3; i++) {
+            ASSERT_NEAR_ALL(EITHER(1e-14, 1e-6), change[0].nu_of_zeta[i], change[n].nu_of_zeta[i], 3);
+            ASSERT_NEAR_ALL(EITHER(1e-14, 1e-6), change[0].zeta_of_nu[i], change[n].zeta_of_nu[i], 3);
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(wheels_that_a_vehicle_has_not_change_nothing);
     RUN_TEST(the_change_of_a_constraint_is_that_of_its_wheel_whatever_its_number);
+    RUN_TEST(a_constraint_changes_alike_however_long_its_row_is);
     return UNITY_END();
 }
