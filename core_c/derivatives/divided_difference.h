@@ -5,7 +5,7 @@
 #include "common.h"
 
 /* Gauss' quadrature of five points on −1 … 1: where h·r of two rates are at most 1 apart, the mean of the slope
- * between them to 1e-15, without the cancellation of a difference. */
+ * between them to 1e-13, without the cancellation of a difference. */
 #define SLOPE_POINTS 5
 static const real slope_point[SLOPE_POINTS] = {R(0), R(0.53846931010568309104), R(-0.53846931010568309104),
                                                R(0.90617984593866399280), R(-0.90617984593866399280)};

@@ -104,9 +104,21 @@ static void no_number_behind_the_weights_is_written(void) {
     TEST_ASSERT_TRUE(room.behind == 7);
 }
 
+/* From h·r = 4 on the function beyond those of a step is their difference, below it a series, whose terms alternate. */
+static void weights_at_the_end_of_the_series_have_the_digits_of_the_difference(void) {
+    const linear_map first = {vector_of(1, 0, 0), none, none};
+    gauss_weight_change change;
+    laconic_model m;
+    memset(&m, 0, sizeof m);
+    m.decay_per_s[0] = 4;
+    laconic_gauss_weight_change_of(&change, &m, 1, &first);
+    ASSERT_NEAR(EITHER(1.9e-16, 1.6e-7), -0.0076565362670373192985, change.entry[0][OF_MEAN + 2]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(no_number_behind_the_weights_is_written);
     RUN_TEST(rounds_that_do_not_settle_are_linearised_one_by_one);
+    RUN_TEST(weights_at_the_end_of_the_series_have_the_digits_of_the_difference);
     return UNITY_END();
 }
