@@ -54,11 +54,18 @@ static void tangent_of_either_sign(void) {
     }
 }
 
+/* A hundredth of the last term is below the last digit of the sum, and yet decides it. */
+static void in_single_the_last_digit_of_the_tangent_is_right_here(void) {
+    const laconic_real z = REAL(-977) / REAL(64000);
+    ASSERT_NEAR(EITHER(2e-10, 3e-8), tangent_of((double)z), poly_tangent(z));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sine_and_cosine_up_to_an_eighth_of_a_turn);
     RUN_TEST(chord_over_its_arc);
     RUN_TEST(displacement_by_a_slope_of_the_speed);
     RUN_TEST(tangent_of_either_sign);
+    RUN_TEST(in_single_the_last_digit_of_the_tangent_is_right_here);
     return UNITY_END();
 }

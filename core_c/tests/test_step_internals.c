@@ -205,6 +205,18 @@ static void what_is_left_of_a_motion_ends_where_its_square_is_still_a_normal_num
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)sums[2].value);
 }
 
+/* ------------------------------------------------------------------------------------- chord -- */
+
+/* α² is just what the polynomials go to; the quotient that larger angles take has lost digits here. */
+static void at_the_border_the_chord_has_the_digits_of_the_polynomials(void) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        real sinc, half_j1;
+        chord_factors(&sinc, &half_j1, REAL(0.125) * REAL(sign));
+        ASSERT_NEAR(2 * LACONIC_EPSILON, 8 * sin(0.125), sinc);
+        TEST_ASSERT_TRUE(half_j1 == REAL(sign) * REAL(EITHER(0x1.54cce04c9ea0cp-6, 0x1.54ccdcp-6)));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(everything_that_acts_is_in_the_forcing);
@@ -220,5 +232,6 @@ int main(void) {
     RUN_TEST(growth_by_just_the_tolerance_is_rounding);
     RUN_TEST(growth_of_just_what_the_forcing_supplies_is_allowed);
     RUN_TEST(the_power_is_taken_over_the_step_before_it_is_doubled);
+    RUN_TEST(at_the_border_the_chord_has_the_digits_of_the_polynomials);
     return UNITY_END();
 }
