@@ -292,6 +292,19 @@ static void numbers_that_are_not_finite_are_refused(void) {
     refuses_placed(motion, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0);
 }
 
+/* What is compared is the size of the motion that was given, with its forbidden part. */
+static void a_start_may_leave_the_constraints_by_a_tolerance_of_its_own_size(void) {
+    const double tolerance = (double)LACONIC_RANK_TOLERANCE;
+    laconic_start start = start_with(tolerance * (1 + 0.5 * tolerance), 1, 0);
+    laconic_vehicle v = caster();
+    laconic_state state;
+    v.wheel[0].axle_rad = 0; /* so that its cosine is not rounded */
+    const laconic_model m = model_of(v);
+    ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, NULL));
+    start.nu_rad_per_s[0] = REAL(tolerance * (1 + 2 * tolerance));
+    ASSERT_STATUS(LACONIC_START_AGAINST_CONSTRAINTS, laconic_state_set(&state, &m, &start, NULL));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_is_set_is_what_is_read);
@@ -312,5 +325,6 @@ int main(void) {
     RUN_TEST(what_the_constraints_forbid_is_projected_away_and_the_rest_stays);
     RUN_TEST(allowed_motions_are_set_as_they_are);
     RUN_TEST(numbers_that_are_not_finite_are_refused);
+    RUN_TEST(a_start_may_leave_the_constraints_by_a_tolerance_of_its_own_size);
     return UNITY_END();
 }
