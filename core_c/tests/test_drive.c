@@ -149,6 +149,41 @@ static void a_supply_of_which_nothing_is_left_drives_nothing(void) {
     ASSERT_NEAR_ALL(0, plant[1].slip.wheel_speed_rad_per_s, plant[0].slip.wheel_speed_rad_per_s, 3);
 }
 
+/* Where the voltage is nearly found a round more changes its last digit: the tolerance is one of the bits'. */
+static void the_rounds_end_at_a_tolerance_of_just_its_size(void) {
+    static const struct {
+        double supply_V, resistance_ohm, command_V[2], speed, bits;
+    } cases[] = {{1.5, 0.75, {-1.5, 8.3000000000000007}, 7.0999999999999996, 0x1.8af8af8af8af1p-4},
+                 {2.6, 0.8, {-0.90000000000000036, -1.0999999999999996}, 7, 0x1.5555555555557p-1}};
+    for (int n = 0; n < 2; n++) {
+        const laconic_friction f = drive_of(cases[n].supply_V, cases[n].resistance_ohm, 0);
+        const laconic_real speed[3] = {REAL(cases[n].speed), 0, 0};
+        laconic_input input = no_input();
+        for (int i = 0; i < 2; i++) input.voltage_V[i] = REAL(cases[n].command_V[i]);
+        const double volts = (double)laconic_supply_voltage(&f, &input, speed, 0);
+        ASSERT_NEAR(EITHER(0, 1e-6), cases[n].bits, volts);
+    }
+}
+
+/* As a smooth law may be asked of any input. */
+static void a_command_that_is_no_number_has_reached_no_limit(void) {
+    const laconic_friction f = drive_of(12, 0, 3);
+    const motor_state unknown = laconic_motor_at(&f, 0, NOT_A_NUMBER, 0, 12);
+    TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_NONE, unknown.limit);
+    TEST_ASSERT_TRUE(unknown.voltage_V != unknown.voltage_V && unknown.torque != unknown.torque);
+}
+
+/* Of a motor that is shorted the supply knows nothing, however large its current. */
+static void a_current_beyond_the_range_in_a_shorted_motor_leaves_the_supply_alone(void) {
+    laconic_friction f = drive_of(12, 0.5, 0);
+    const laconic_real speed[3] = {REAL(EITHER(1e75, 1e9)), 0, 0};
+    laconic_input input = no_input();
+    f.axle[0].circuit = LACONIC_MOTOR_SHORTED;
+    f.axle[0].back_emf = f.axle[0].ampere = REAL(EITHER(1e150, 1e18));
+    TEST_ASSERT_FALSE(isfinite((double)laconic_motor_at(&f, 0, 0, speed[0], 12).current_A));
+    ASSERT_NEAR(0, 12, laconic_supply_voltage(&f, &input, speed, 0));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(voltages_are_cut_to_the_supply_s);
@@ -162,5 +197,8 @@ int main(void) {
     RUN_TEST(a_supply_that_breaks_down_stays_above_0);
     RUN_TEST(a_supply_without_resistance_has_its_voltage);
     RUN_TEST(a_supply_of_which_nothing_is_left_drives_nothing);
+    RUN_TEST(the_rounds_end_at_a_tolerance_of_just_its_size);
+    RUN_TEST(a_command_that_is_no_number_has_reached_no_limit);
+    RUN_TEST(a_current_beyond_the_range_in_a_shorted_motor_leaves_the_supply_alone);
     return UNITY_END();
 }
