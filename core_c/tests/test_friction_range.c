@@ -277,6 +277,92 @@ static void the_speed_at_which_a_wheel_would_roll_is_refused_with_its_sign(void)
     }
 }
 
+/* So light that a wheel's constants leave the range where those of the vehicle do not. */
+#define UNIT REAL(EITHER(0x1p-60, 0x1p-30)) /* M R² */
+#define RANGE REAL(EITHER(0x1p512, 0x1p64)) /* whose square is the first beyond the range */
+#define PLACE REAL(EITHER(0x1p459, 0x1p40)) /* the last place of the number below it */
+
+static laconic_vehicle light_unicycle(void) {
+    laconic_vehicle v = bare_body();
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_inertia_kgm2 = UNIT;
+    v.wheel_radius_m = 1;
+    v.ground.friction_coefficient = REAL(0.5);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0, 0, 0);
+    return v;
+}
+
+/* Half a place that comes before three quarters of one is lost, behind them it is not. */
+static void constants_of_an_axle_add_up_in_their_order_to_the_end_of_the_range(void) {
+    for (int last = 0; last < 4; last++) {
+        laconic_vehicle v = light_unicycle();
+        v.motor_gain_Nm_per_V = (RANGE - 2 * PLACE) * UNIT;
+        v.motor_damping_Nms = REAL(0.5) * PLACE * UNIT;
+        if (last == 0) v.ground.axle_friction_Nm = REAL(0.75) * PLACE * UNIT;
+        if (last == 1) v.ground.friction_coefficient = REAL(0.75) * PLACE;
+        if (last == 2) v.drive.winding_resistance_ohm = 1 / (RANGE * (REAL(0.75) * PLACE));
+        if (last == 3) {
+            v.drive.viscous_friction_Nms = REAL(0.75) * PLACE * UNIT;
+            v.motor_damping_Nms += v.drive.viscous_friction_Nms;
+        }
+        ASSERT_STATUS(LACONIC_OK, status_of(&v));
+        v.motor_gain_Nm_per_V += PLACE * UNIT;
+        ASSERT_STATUS(LACONIC_OVERFLOW, status_of(&v));
+    }
+}
+
+/* Squares of levers are about half a place of the largest number. In single the levers themselves decide, and the order
+ * in which they are added. */
+static void in_single_levers_count_beside_their_squares(void) {
+    static const struct {
+        double x_m, y_m;
+        laconic_status status;
+    } places[] = {{741454.5, 0, LACONIC_OK},
+                  {741455, 0, LACONIC_OVERFLOW},
+                  {734537.375, 101043.703, LACONIC_OK},
+                  {604715, 429039.094, LACONIC_OVERFLOW}};
+    for (size_t n = 0; n < sizeof places / sizeof places[0]; n++) {
+        laconic_vehicle v = light_unicycle();
+        v.wheel_inertia_kgm2 = (RANGE - PLACE) * UNIT;
+        v.wheel[0].x_m = REAL(places[n].x_m);
+        v.wheel[0].y_m = REAL(places[n].y_m);
+        ASSERT_STATUS(IN_DOUBLE ? LACONIC_OK : places[n].status, status_of(&v));
+    }
+}
+
+/* Of a wheel so much larger than its vehicle all that is left to find is what rounding hides, in double to the last bit. */
+static void what_rounding_hides_in_a_huge_wheel_counts_as_solved(void) {
+    laconic_vehicle v = bare_body();
+    laconic_start start = start_with(-0.25, 0.125, 0);
+    const laconic_input input = no_input();
+    laconic_plant plant;
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = v.ground.axle_friction_Nm = 1;
+    v.wheel_inertia_kgm2 = 2;
+    v.ground.friction_coefficient = REAL(0.25);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.5, 0, 0.7, 0);
+    v.wheel[0].own_radius_m = REAL(EITHER(1e16, 1e4));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, 1, &start, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 1, &why));
+}
+
+/* Of tiny wheels the impulse of a contact, squared, leaves the range: it tells no direction in which the contact slips. */
+static void a_contact_whose_impulse_cannot_be_squared_does_not_slip(void) {
+    laconic_vehicle v = bare_body();
+    laconic_start start = start_with(0.625, 0, -0.5);
+    laconic_input input = no_input();
+    laconic_plant plant;
+    v.yaw_inertia_kgm2 = REAL(0.25);
+    v.wheel_radius_m = REAL(EITHER(1e-60, 1e-9));
+    v.wheel_inertia_kgm2 = REAL(0.005);
+    v.motor_damping_Nms = REAL(EITHER(1, 100));
+    v.ground.friction_coefficient = 4;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, EITHER(1, 0.5), 0, EITHER(1.4, 0.7), 0);
+    if (IN_DOUBLE) add_wheel(&v, LACONIC_WHEEL_FIXED, 1, 1, 2.4, 0);
+    input.body_force_N[1] = -2;
+    input.voltage_V[0] = REAL(-0.1);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(0.001), &start, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 1, &why));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_constant_of_ground_and_supply_counts_in_the_range);
@@ -297,5 +383,9 @@ int main(void) {
     RUN_TEST(friction_of_motor_and_gears_is_at_most_the_whole_damping);
     RUN_TEST(supports_start_with_the_loads_that_they_have_after_a_step);
     RUN_TEST(the_speed_at_which_a_wheel_would_roll_is_refused_with_its_sign);
+    RUN_TEST(constants_of_an_axle_add_up_in_their_order_to_the_end_of_the_range);
+    RUN_TEST(in_single_levers_count_beside_their_squares);
+    RUN_TEST(what_rounding_hides_in_a_huge_wheel_counts_as_solved);
+    RUN_TEST(a_contact_whose_impulse_cannot_be_squared_does_not_slip);
     return UNITY_END();
 }
