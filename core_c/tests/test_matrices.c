@@ -89,6 +89,29 @@ static void a_refused_vehicle_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &x, sizeof x);
 }
 
+/* A locked wheel's row counts twice, as a wheel's and as a constraint: most of what fits. λ counts beside it, of which A
+ * does not hold the square where the wheel is large; Λ, which is larger, does not. */
+static void beside_rows_lambda_of_the_wheels_counts_and_that_of_the_body_does_not(void) {
+    const double part = EITHER(2.18e153, 3e18); /* a little less than a sixth of what fits */
+    for (int heavy = 0; heavy < 2; heavy++) {
+        laconic_vehicle v = bare_body();
+        v.wheel_radius_m = 1;
+        v.mass_kg = REAL(1 / part);
+        v.yaw_inertia_kgm2 = heavy ? v.mass_kg : REAL(5.3 * part);
+        v.wheel_inertia_kgm2 = REAL(EITHER(1e-320, 1e-43));
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, 0, PI / 2);
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, 0, PI / 2);
+        v.wheel[0].locked = true;
+        v.wheel[0].own_radius_m = REAL((heavy ? 1 / 2.4 : 0.5) / part);
+        v.wheel[1].own_radius_m = REAL(EITHER(1e153, 1e18));
+        if (heavy) v.wheel[1].own_inertia_kgm2 = REAL(2.5 * part);
+        ASSERT_STATUS(heavy ? LACONIC_OVERFLOW : LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+        if (!heavy) ASSERT_NEAR(1e-6 * part, sqrt(5.3) * part, x.lambda_yaw);
+        v.wheel[1].own_inertia_kgm2 = 0;
+        ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_three_wheel_example_has_the_papers_matrices);
@@ -99,5 +122,6 @@ int main(void) {
     RUN_TEST(a_locked_wheel_whose_row_leaves_the_range_is_refused);
     RUN_TEST(sizes_of_rows_add_up_whatever_they_are_of);
     RUN_TEST(a_refused_vehicle_changes_nothing);
+    RUN_TEST(beside_rows_lambda_of_the_wheels_counts_and_that_of_the_body_does_not);
     return UNITY_END();
 }

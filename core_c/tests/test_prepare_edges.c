@@ -155,6 +155,48 @@ static void in_single_roots_beside_squares_count_at_the_end_of_the_range(void) {
     }
 }
 
+/* The largest number but one in single, whose last place is twice what the rest of a sum is near to. */
+#define LARGEST REAL(0x1p64 - 0x1p40)
+
+/* Axes that are rotated twice have rows that are the roots of inertias. Each of the three decides here. */
+static void in_single_roots_of_inertias_count_at_the_end_of_the_range(void) {
+    static const double gain[] = {0x1.f3ffe8p+37, 0x1.f3ffeap+37};
+    for (int beyond = 0; beyond < 2 && !IN_DOUBLE; beyond++) {
+        laconic_vehicle v = bare_body();
+        laconic_model model;
+        v.mass_kg = LARGEST;
+        v.wheel_radius_m = REAL(0x1p-32);
+        v.yaw_inertia_kgm2 = 1;
+        v.wheel_inertia_kgm2 = 0;
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, PI / 2, PI / 2);
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0x1p-32, 0, 0, PI / 2);
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, -0x1p-32, 0, 0, PI / 2);
+        for (int i = 0; i < 3; i++) {
+            v.wheel[i].own_inertia_kgm2 = REAL(0x1p32);
+            v.wheel[i].own_motor_damping_Nms = REAL(1 + i);
+        }
+        v.wheel[0].own_motor_gain_Nm_per_V = REAL(gain[beyond]);
+        ASSERT_STATUS(beyond ? LACONIC_OVERFLOW : LACONIC_OK, laconic_prepare(&model, &v, &why));
+    }
+}
+
+/* w × g is not longer than w, and its last place is one of the mass. */
+static void in_single_the_turn_of_w_counts_at_the_end_of_the_range(void) {
+    static const double mass[] = {0x1.fe96e8p+38, 0x1.fe96eap+38};
+    for (int beyond = 0; beyond < 2 && !IN_DOUBLE; beyond++) {
+        laconic_vehicle v = bare_body();
+        laconic_model model;
+        v.mass_kg = REAL(mass[beyond]);
+        v.wheel_radius_m = REAL(0x1p-20);
+        v.yaw_inertia_kgm2 = REAL(0x1p-33);
+        v.wheel_inertia_kgm2 = 0;
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0x1p-36, 0, 0, PI / 2);
+        v.wheel[0].locked = true; /* so that its inertia is none of the motion's */
+        v.wheel[0].own_inertia_kgm2 = LARGEST;
+        ASSERT_STATUS(beyond ? LACONIC_OVERFLOW : LACONIC_OK, laconic_prepare(&model, &v, &why));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(axes_are_the_same_without_damping_where_rows_hardly_are_numbers);
@@ -165,5 +207,7 @@ int main(void) {
     RUN_TEST(numbers_that_leave_the_range_together_are_refused_and_do_not_cancel);
     RUN_TEST(the_end_of_the_range_is_there_to_the_last_bit);
     RUN_TEST(in_single_roots_beside_squares_count_at_the_end_of_the_range);
+    RUN_TEST(in_single_roots_of_inertias_count_at_the_end_of_the_range);
+    RUN_TEST(in_single_the_turn_of_w_counts_at_the_end_of_the_range);
     return UNITY_END();
 }
