@@ -157,6 +157,25 @@ static void supports_that_cannot_hold_the_moment_carry_the_weight(void) {
     }
 }
 
+/* Two points of which one would be pulled by just what counts as rounding: it stays, and the other's load is not solved
+ * for again. */
+static void a_load_below_zero_by_just_the_tolerance_is_rounding(void) {
+    const laconic_real none_N[2] = {0, 0};
+    for (int beyond = 0; beyond < 2; beyond++) {
+        normal_loads loads;
+        laconic_friction f;
+        memset(&f, 0, sizeof f);
+        f.point_count = 2;
+        f.radius_m = f.weight_N = f.point_row[1][0] = 1;
+        f.normal_load_of_wrench[0][0] = -LACONIC_RANK_TOLERANCE * (1 + REAL(beyond) * 2 * LACONIC_EPSILON);
+        f.normal_load_of_wrench[1][0] = REAL(0.5);
+        laconic_normal_loads(&loads, &f, none_N);
+        ASSERT_NEAR(beyond ? ROUNDING : 0, beyond ? 1 : 0.5, loads.statics_N[1]);
+        ASSERT_NEAR(ROUNDING, 1, loads.carried_N[1]);
+        TEST_ASSERT_TRUE(loads.carried_N[0] == 0);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(at_rest_three_wheels_share_the_weight);
@@ -168,5 +187,6 @@ int main(void) {
     RUN_TEST(where_a_load_is_no_number_nothing_is_carried);
     RUN_TEST(points_are_as_many_as_the_vehicle_has);
     RUN_TEST(supports_that_cannot_hold_the_moment_carry_the_weight);
+    RUN_TEST(a_load_below_zero_by_just_the_tolerance_is_rounding);
     return UNITY_END();
 }

@@ -305,6 +305,52 @@ static void a_start_may_leave_the_constraints_by_a_tolerance_of_its_own_size(voi
     ASSERT_STATUS(LACONIC_START_AGAINST_CONSTRAINTS, laconic_state_set(&state, &m, &start, NULL));
 }
 
+/* A state is plain data: whatever of a place a caller has spoilt is refused, as is what has left the range. */
+static void a_place_that_is_no_number_is_not_carried_on(void) {
+    const laconic_model m = model_of(mecanum());
+    for (int n = 0; n < 4; n++) {
+        laconic_state state = moving(&m, 1, 0, 0), before;
+        laconic_real *const part[4] = {&state.x_m.value, &state.x_m.rest, &state.y_m.value, &state.y_m.rest};
+        *part[n] = NOT_A_NUMBER;
+        before = state;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_state_carry(&state, &m, &m));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+    }
+}
+
+static laconic_state projected_state(const laconic_model *m, laconic_start motion) {
+    laconic_state state;
+    ASSERT_STATUS(LACONIC_OK, laconic_state_project(&state, m, &motion, NULL));
+    return state;
+}
+
+/* Its nearest lateral motion is a fifth of that given. What of it is no more than the tolerance is told as none. */
+static void a_limit_of_just_the_tolerance_is_told_as_none(void) {
+    const laconic_real tolerance = LACONIC_RANK_TOLERANCE;
+    laconic_vehicle v = bare_body();
+    int at_edge = 0;
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = 1;
+    v.wheel_inertia_kgm2 = 0;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0.5, 0, 0); /* ν1 = ν3/2 */
+    const laconic_model m = model_of(v);
+    for (int n = 0; n < 4000; n++) {
+        const laconic_real forth = 1 + REAL(0.04) * REAL(n / 200);
+        const laconic_real given =
+            tolerance * forth / (REAL(0.2) - tolerance) * (1 + REAL(n % 200 - 100) * LACONIC_EPSILON);
+        const laconic_start start = {{given, forth, 0}, 0, 0, 0, {0}};
+        const laconic_state nearest = projected_state(&m, start);
+        const laconic_real edge = tolerance * (given + forth);
+        laconic_real nu[3];
+        laconic_state state;
+        laconic_nu(&m, &nearest, nu);
+        ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 1,
+                       laconic_state_set(&state, &m, &start, &why), why);
+        TEST_ASSERT_TRUE(why.limit == (nu[0] <= edge ? 0 : nu[0]));
+        at_edge += nu[0] <= edge && nu[0] >= edge;
+    }
+    TEST_ASSERT_GREATER_THAN(0, at_edge);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_is_set_is_what_is_read);
@@ -326,5 +372,7 @@ int main(void) {
     RUN_TEST(allowed_motions_are_set_as_they_are);
     RUN_TEST(numbers_that_are_not_finite_are_refused);
     RUN_TEST(a_start_may_leave_the_constraints_by_a_tolerance_of_its_own_size);
+    RUN_TEST(a_place_that_is_no_number_is_not_carried_on);
+    RUN_TEST(a_limit_of_just_the_tolerance_is_told_as_none);
     return UNITY_END();
 }
