@@ -389,6 +389,15 @@ static void a_torque_on_an_axle_speeds_up_its_wheel_alone(void) {
     ASSERT_NEAR(1e-6, 0.04 * (sin(0.5) + 2 * cos(0.5)), rates.y_m_per_s);
 }
 
+/* A plant is plain data, and outputs are of any: a slip that is no number is none. */
+static void a_contact_whose_slip_is_no_number_does_not_slip(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(robotino(0.4, 0, 0), 1e-3, 0, 0, 0);
+    plant.slip.wheel_speed_rad_per_s[1] = NOT_A_NUMBER;
+    plant.slip.grip_N[1][0] = plant.friction.axle[1].friction_coefficient * plant.slip.normal_N[1];
+    TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[1] == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -412,5 +421,6 @@ int main(void) {
     RUN_TEST(a_brake_holds_a_wheel_with_oblique_rollers_that_drag);
     RUN_TEST(outputs_do_not_hang_on_those_before);
     RUN_TEST(a_torque_on_an_axle_speeds_up_its_wheel_alone);
+    RUN_TEST(a_contact_whose_slip_is_no_number_does_not_slip);
     return UNITY_END();
 }
