@@ -329,7 +329,7 @@ static void in_single_levers_count_beside_their_squares(void) {
     }
 }
 
-/* Of a wheel so much larger than its vehicle all that is left to find is what rounding hides, in double to the last bit. */
+/* Of a wheel so much larger than its vehicle all that is left to find is what rounding hides: in double just that. */
 static void what_rounding_hides_in_a_huge_wheel_counts_as_solved(void) {
     laconic_vehicle v = bare_body();
     laconic_start start = start_with(-0.25, 0.125, 0);
@@ -344,7 +344,7 @@ static void what_rounding_hides_in_a_huge_wheel_counts_as_solved(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 1, &why));
 }
 
-/* Of tiny wheels the impulse of a contact, squared, leaves the range: it tells no direction in which the contact slips. */
+/* Of tiny wheels the square of a contact's impulse leaves the range: it tells no direction in which the contact slips. */
 static void a_contact_whose_impulse_cannot_be_squared_does_not_slip(void) {
     laconic_vehicle v = bare_body();
     laconic_start start = start_with(0.625, 0, -0.5);

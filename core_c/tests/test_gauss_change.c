@@ -115,7 +115,7 @@ static void weights_at_the_end_of_the_series_have_the_digits_of_the_difference(v
     ASSERT_NEAR(EITHER(1.9e-16, 1.6e-7), -0.0076565362670373192985, change.entry[0][OF_MEAN + 2]);
 }
 
-/* Of rounds that have just not settled, to the digits that are promised: as if they had, these would be 1e-10, 3e-12 and
+/* Of rounds that have just not settled, to the digits that are promised: as if they had, these are 1e-10, 3e-12 and
  * 3e-13 of the number off. */
 static void rounds_that_have_hardly_not_settled_are_linearised_as_they_are(void) {
     static const struct {

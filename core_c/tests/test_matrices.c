@@ -89,8 +89,8 @@ static void a_refused_vehicle_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &x, sizeof x);
 }
 
-/* A locked wheel's row counts twice, as a wheel's and as a constraint: most of what fits. λ counts beside it, of which A
- * does not hold the square where the wheel is large; Λ, which is larger, does not. */
+/* A locked wheel's row counts twice, as a wheel's and as a constraint: most of what fits. λ counts beside it, of which
+ * A does not hold the square where the wheel is large; Λ, which is larger, does not. */
 static void beside_rows_lambda_of_the_wheels_counts_and_that_of_the_body_does_not(void) {
     const double part = EITHER(2.18e153, 3e18); /* a little less than a sixth of what fits */
     for (int heavy = 0; heavy < 2; heavy++) {
