@@ -344,7 +344,7 @@ static void what_rounding_hides_in_a_huge_wheel_counts_as_solved(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 1, &why));
 }
 
-/* Of tiny wheels the square of a contact's impulse leaves the range: it tells no direction in which the contact slips. */
+/* Of tiny wheels the square of a contact's impulse leaves the range: it tells no direction in which it slips. */
 static void a_contact_whose_impulse_cannot_be_squared_does_not_slip(void) {
     laconic_vehicle v = bare_body();
     laconic_start start = start_with(0.625, 0, -0.5);
