@@ -66,7 +66,7 @@ static void when_all_has_died_out_the_rest_of_the_step_is_one_panel(void) {
     ASSERT_NEAR(ROUNDING * 1e-4, PANEL_DECAY * REAL(0.5e-4), half.first_share);
 }
 
-/* After 18 decay times, in single 12, of the slower axis: of 32 first stretches, or of 64 where 32 end a little before. */
+/* After 18 decay times, in single 12, of the slower axis: of 32 first stretches, or of 64 where 32 end just before. */
 static void an_axis_has_died_out_after_so_many_decay_times(void) {
     const double fast = 1000, reached = 32 * EITHER(3 * 0.375, 0.5) / fast; /* of the slow axis, by its decay */
     const laconic_integrator dead = with_panels(REAL(EITHER(18.01, 12.01) / reached), 0, REAL(fast));
