@@ -7,6 +7,7 @@ IEEE 754, where names in capitals are what they look like: constants without a s
   the commutative functions of laws.toml; `a > b` is `b < a`;
 * a comparison with -0 is one with 0;
 * `!(a == b)` is `a != b`; in a condition `x != 0` is `x`, `!!x` is `x` and `-x` is `x`; `!c ? a : b` is `c ? b : a`;
+* what a function returns that gives a truth is only asked whether it is 0;
 * false, NULL and LACONIC_OK are 0, true is 1;
 * a loop that counts by ones from a number up to a constant no lower, or from 0 up to one of the counts of laws.toml,
   and changes neither within, ends the same with `<` and with `!=`;
@@ -34,6 +35,7 @@ FREE = COMMUTATIVE_FUNCTIONS | {"R", "N"}  # they read their arguments alone
 COMMUTATIVE = {"+", "*", "==", "!=", "&", "|", "^"}
 MIRRORED = {">": "<", ">=": "<="}
 COMPARISONS = {"<", "<=", "==", "!="}
+TRUTHS = {"bool", "verdict"}
 DECIDING = {"&": "&&", "|": "||"}
 ZERO = ("number", "0")
 ONE = ("number", "1")
@@ -44,7 +46,15 @@ NUMBERS = {"false": ZERO, "NULL": ZERO, "LACONIC_OK": ZERO, "true": ("number", "
 
 def meaning(function: Node) -> Meaning:
     """Of a function's definition, or any other node."""
-    return _statement(function)
+    made, of = _statement(function), function.child_by_field_name("type")
+    return _with_truths(made) if of is not None and _text(of) in TRUTHS else made
+
+
+def _with_truths(of: Meaning) -> Meaning:
+    """The same where what is returned becomes a truth."""
+    if of[0] == "return_statement" and len(of) == 4:
+        return *of[:2], _truth_of(of[2]), of[3]
+    return tuple(_with_truths(each) if isinstance(each, tuple) else each for each in of)
 
 
 # -------------------------------------------------------------------------------------------------- statements
@@ -287,7 +297,10 @@ _VALUES: dict[str, Callable[[Node], Meaning]] = {
 
 def _truth(node: Node) -> Meaning:
     """Of what is only asked whether it is 0."""
-    value = _value(node)
+    return _truth_of(_value(node))
+
+
+def _truth_of(value: Meaning) -> Meaning:
     if value[0] in ("!=", "==") and (ZERO in value[1:] or REAL_ZERO in value[1:]):
         asked = _unsigned(value[2] if value[1] in (ZERO, REAL_ZERO) else value[1])
         return asked if value[0] == "!=" else ("!", asked)

@@ -112,6 +112,16 @@ def test_a_macro_that_is_given_an_array_for_an_index_may_ask_its_size():
     assert without_growth(before, after) != before
 
 
+@pytest.mark.parametrize(("type_", "is_alike"), [("bool", True), ("static inline verdict", True), ("int", False)])
+def test_of_what_a_truth_is_given_only_whether_it_is_0_counts(type_, is_alike):
+    def of(value: str) -> tuple:
+        text = f"{type_} f(int a) {{ if (a > 7) return g(a); return {value}; }}"
+        return meaning(parsed(text.encode()).root_node.children[0])
+
+    assert (of("a") == of("-a")) is (of("a") == of("a != 0")) is is_alike
+    assert of("a") != of("!a") and of("a") != of("b")
+
+
 def test_the_first_length_of_a_parameter_says_nothing_and_the_second_does():
     def of(parameter: str) -> tuple:
         return meaning(parsed(f"int f(int {parameter}) {{ return 1; }}".encode()).root_node.children[0])
