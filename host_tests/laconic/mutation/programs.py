@@ -67,7 +67,7 @@ _FLAGS = ("-Werror=implicit-function-declaration", "-Werror=incompatible-pointer
 
 
 def units() -> list[Unit]:
-    """All of the build tree."""
+    """All of the build tree; BadInput where there is none, or one of other sources."""
     path = build_dir().resolve() / "compile_commands.json"
     try:
         entries = json.loads(path.read_text(encoding="utf-8"))
@@ -82,6 +82,8 @@ def units() -> list[Unit]:
             kept = [word for word in words[:words.index("-o")] if not word.startswith("-W") and word != "-g"]
             found.append(Unit(Path(entry["file"]), target[1], (*kept, *_FLAGS), Path(entry["directory"]),
                               Path(entry["directory"]) / out))
+    if not any(unit.source.resolve().is_relative_to(SOURCE_DIR.resolve()) for unit in found):
+        raise BadInput(f"{path}: is of other sources than {SOURCE_DIR}; name their build tree in LACONIC_BUILD_DIR")
     return found
 
 
