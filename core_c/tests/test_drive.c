@@ -165,6 +165,16 @@ static void the_rounds_end_at_a_tolerance_of_just_its_size(void) {
     }
 }
 
+/* In single a round is off by just the tolerance here. One more would change the last digit. */
+static void the_rounds_end_where_they_are_off_by_just_the_tolerance(void) {
+    const laconic_friction f = drive_of(16.6, 0.5, 0);
+    const laconic_real speed[3] = {REAL(3.4), 0, 0};
+    laconic_input input = no_input();
+    input.voltage_V[0] = REAL(-5.2);
+    input.voltage_V[1] = 18;
+    ASSERT_NEAR(EITHER(1e-5, 0), 0x1.96e6aap+3, laconic_supply_voltage(&f, &input, speed, 0));
+}
+
 /* As a smooth law may be asked of any input. */
 static void a_command_that_is_no_number_has_reached_no_limit(void) {
     const laconic_friction f = drive_of(12, 0, 3);
@@ -198,6 +208,7 @@ int main(void) {
     RUN_TEST(a_supply_without_resistance_has_its_voltage);
     RUN_TEST(a_supply_of_which_nothing_is_left_drives_nothing);
     RUN_TEST(the_rounds_end_at_a_tolerance_of_just_its_size);
+    RUN_TEST(the_rounds_end_where_they_are_off_by_just_the_tolerance);
     RUN_TEST(a_command_that_is_no_number_has_reached_no_limit);
     RUN_TEST(a_current_beyond_the_range_in_a_shorted_motor_leaves_the_supply_alone);
     return UNITY_END();
