@@ -310,6 +310,62 @@ static void constants_of_an_axle_add_up_in_their_order_to_the_end_of_the_range(v
     }
 }
 
+/* Rollers that hardly drag make a contact's masses across them as large as what a light wheel turns by. The order in
+ * which these are added decides the last digit. */
+static void in_single_masses_across_rollers_add_up_behind_the_wheels_inertia(void) {
+    static const struct {
+        double drag, radius_m, inertia_kgm2;
+        laconic_status status;
+    } wheels[] = {{0x1.93bf9p-32, 0x1.e88d0cp+0, 0x1.7b0e12p-90, LACONIC_OVERFLOW},
+                  {0x1.8bc99p-32, 0x1.9e9868p+0, 0x1.6307ap-90, LACONIC_OK}};
+    for (size_t n = 0; n < sizeof wheels / sizeof wheels[0] && !IN_DOUBLE; n++) {
+        laconic_vehicle v = light_unicycle();
+        v.wheel[0].kind = LACONIC_WHEEL_ROLLER;
+        v.wheel[0].roller_rad = REAL(PI / 2);
+        v.wheel[0].own_radius_m = REAL(wheels[n].radius_m);
+        v.wheel_inertia_kgm2 = REAL(wheels[n].inertia_kgm2);
+        v.ground.roller_drag = REAL(wheels[n].drag);
+        ASSERT_STATUS(wheels[n].status, status_of(&v));
+    }
+}
+
+/* Beside the height of the centre of mass the wheel's constants are half a place, which their last digits decide. */
+static void in_single_levers_come_before_what_a_light_wheel_turns_by(void) {
+    static const struct {
+        double x_m, y_m, radius_m, inertia_kgm2;
+        laconic_status status;
+    } wheels[] = {{480350, 333296, 0x1.110042p-1, 0x1.b2a2f4p-68, LACONIC_OVERFLOW},
+                  {484426, 208895, 0x1.9e51e4p+0, 0x1.d5206cp-67, LACONIC_OK}};
+    for (size_t n = 0; n < sizeof wheels / sizeof wheels[0] && !IN_DOUBLE; n++) {
+        laconic_vehicle v = light_unicycle();
+        v.com_z_m = RANGE - PLACE;
+        v.wheel[0].x_m = REAL(wheels[n].x_m);
+        v.wheel[0].y_m = REAL(wheels[n].y_m);
+        v.wheel[0].own_radius_m = REAL(wheels[n].radius_m);
+        v.wheel_inertia_kgm2 = REAL(wheels[n].inertia_kgm2);
+        ASSERT_STATUS(wheels[n].status, status_of(&v));
+    }
+}
+
+/* The contact's mass along the wheel is at most 1, but decides whether the wheel's constants are half a place of the
+ * centre of mass's height, and with this whether that is half a place of the gain. */
+static void in_single_the_mass_along_a_wheel_counts_where_larger_constants_are_near_half_a_place(void) {
+    static const struct {
+        double x_m, y_m, radius_m, inertia_kgm2;
+        laconic_status status;
+    } wheels[] = {{23, 6, 1.8, 0x1.19ac34p-42, LACONIC_OVERFLOW}, {27, 1, 1.15, 0x1.37d2dp-43, LACONIC_OK}};
+    for (size_t n = 0; n < sizeof wheels / sizeof wheels[0] && !IN_DOUBLE; n++) {
+        laconic_vehicle v = light_unicycle();
+        v.com_z_m = REAL(0x1p39 - 0x1p15);
+        v.motor_gain_Nm_per_V = (RANGE - PLACE) * UNIT;
+        v.wheel[0].x_m = REAL(wheels[n].x_m);
+        v.wheel[0].y_m = REAL(wheels[n].y_m);
+        v.wheel[0].own_radius_m = REAL(wheels[n].radius_m);
+        v.wheel_inertia_kgm2 = REAL(wheels[n].inertia_kgm2);
+        ASSERT_STATUS(wheels[n].status, status_of(&v));
+    }
+}
+
 /* Squares of levers are about half a place of the largest number. In single the levers themselves decide, and the order
  * in which they are added. */
 static void in_single_levers_count_beside_their_squares(void) {
@@ -384,6 +440,9 @@ int main(void) {
     RUN_TEST(supports_start_with_the_loads_that_they_have_after_a_step);
     RUN_TEST(the_speed_at_which_a_wheel_would_roll_is_refused_with_its_sign);
     RUN_TEST(constants_of_an_axle_add_up_in_their_order_to_the_end_of_the_range);
+    RUN_TEST(in_single_masses_across_rollers_add_up_behind_the_wheels_inertia);
+    RUN_TEST(in_single_levers_come_before_what_a_light_wheel_turns_by);
+    RUN_TEST(in_single_the_mass_along_a_wheel_counts_where_larger_constants_are_near_half_a_place);
     RUN_TEST(in_single_levers_count_beside_their_squares);
     RUN_TEST(what_rounding_hides_in_a_huge_wheel_counts_as_solved);
     RUN_TEST(a_contact_whose_impulse_cannot_be_squared_does_not_slip);
