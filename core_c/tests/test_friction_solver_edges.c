@@ -63,6 +63,19 @@ static void rest_is_a_share_of_the_free_motion_to_the_last_bit(void) {
     }
 }
 
+/* What is left is nearly all that fits, which is no reason not to pass exactly: along the path it is not solved. */
+static void the_first_pass_is_exact_however_large_the_residual(void) {
+    const double along[3] = {0, 1, 1}, across[3] = {-1, 0, 0};
+    const laconic_real large = EITHER(REAL(0x1p508), REAL(0x1p60));
+    problem p = one_exact_wheel(along, across, 0.0625, 1);
+    p.load[0].grip = large;
+    p.load[0].free_speed = p.speed[0] = 5 * large;
+    p.free[0] = p.nu[0] = -6 * large;
+    p.free[1] = p.nu[1] = 6 * large;
+    p.free[2] = p.nu[2] = -13 * large;
+    TEST_ASSERT_EQUAL_INT(EITHER(6, 5), solve(&p));
+}
+
 /* A wheel in the air, pushed by its motor with just the least energy that is one. */
 static void the_least_energy_moves(void) {
     const double along[3] = {1, 0, 0}, across[3] = {0, 1, 0};
@@ -150,6 +163,7 @@ int main(void) {
     RUN_TEST(residual_and_imbalance_are_within_the_tolerance_together);
     RUN_TEST(on_the_border_of_its_grip_a_contact_sticks);
     RUN_TEST(rest_is_a_share_of_the_free_motion_to_the_last_bit);
+    RUN_TEST(the_first_pass_is_exact_however_large_the_residual);
     RUN_TEST(the_least_energy_moves);
     RUN_TEST(across_rollers_that_hardly_drag_an_impulse_stays);
     RUN_TEST(a_slip_that_is_as_stiff_as_the_penalty_has_these_bits);
