@@ -86,10 +86,27 @@ static void a_constraint_changes_alike_however_long_its_row_is(void) {
     }
 }
 
+/* The change of the wheel's constraint leaves the range, and with it all that moves. The rate of the axis that the
+ * wheel took away stays 0. */
+static void an_axis_that_constraints_took_away_keeps_its_rate_even_where_theirs_leave_the_range(void) {
+    laconic_vehicle v = bare_body(), by;
+    v.wheel_radius_m = REAL(0.1);
+    v.yaw_inertia_kgm2 = v.mass_kg / 16;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0, PI / 2, 0);
+    memset(&by, 0, sizeof by);
+    by.wheel[0].x_m = LACONIC_REAL_MAX;
+    const laconic_model m = model_of(v);
+    const laconic_model_change change = change_of(&m, &v, &by);
+    TEST_ASSERT_EQUAL_INT(2, m.dof);
+    TEST_ASSERT_FALSE(isfinite((double)change.damping_per_s[0][0] + (double)change.damping_per_s[1][1]));
+    TEST_ASSERT_TRUE(change.damping_per_s[2][2] == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(wheels_that_a_vehicle_has_not_change_nothing);
     RUN_TEST(the_change_of_a_constraint_is_that_of_its_wheel_whatever_its_number);
     RUN_TEST(a_constraint_changes_alike_however_long_its_row_is);
+    RUN_TEST(an_axis_that_constraints_took_away_keeps_its_rate_even_where_theirs_leave_the_range);
     return UNITY_END();
 }
