@@ -112,6 +112,27 @@ static void beside_rows_lambda_of_the_wheels_counts_and_that_of_the_body_does_no
     }
 }
 
+/* A constraint is the largest number that fits, the inertia about half a place of it, the wheels' rows about half a
+ * place of the inertia: what is added to them before decides. */
+static void in_single_sizes_add_up_in_their_order_to_the_end_of_the_range(void) {
+    static const struct {
+        double lever, inertia_kgm2;
+        laconic_status status;
+    } wheels[] = {{0x1p14 - 2.5, 0x1.000cp-19, LACONIC_OK},
+                  {0x1p14 - 2.5, 0x1.000c02p-19, LACONIC_OVERFLOW},
+                  {0x1p14 - 1, 0x1.fffffcp-20, LACONIC_OK},
+                  {0x1p14 - 1, 0x1.fffffep-20, LACONIC_OVERFLOW}};
+    for (size_t n = 0; n < sizeof wheels / sizeof wheels[0] && !IN_DOUBLE; n++) {
+        laconic_vehicle v = bare_body();
+        v.mass_kg = v.yaw_inertia_kgm2 = REAL(0x1p-30);
+        v.wheel_radius_m = 1;
+        v.wheel_inertia_kgm2 = REAL(wheels[n].inertia_kgm2);
+        add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0x1p40 - 0x1p64, 0, 0);
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, wheels[n].lever, 0, 0, PI / 2);
+        ASSERT_STATUS(wheels[n].status, laconic_matrices_of(&x, &v, &why));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_three_wheel_example_has_the_papers_matrices);
@@ -123,5 +144,6 @@ int main(void) {
     RUN_TEST(sizes_of_rows_add_up_whatever_they_are_of);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     RUN_TEST(beside_rows_lambda_of_the_wheels_counts_and_that_of_the_body_does_not);
+    RUN_TEST(in_single_sizes_add_up_in_their_order_to_the_end_of_the_range);
     return UNITY_END();
 }
