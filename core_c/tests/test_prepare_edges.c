@@ -197,6 +197,61 @@ static void in_single_the_turn_of_w_counts_at_the_end_of_the_range(void) {
     }
 }
 
+/* The gain is the largest number that fits, scales or rates about half a place of it, and the others about half a place
+ * of these: each of them decides there, and the order in which they are added. */
+static void in_single_sizes_add_up_in_their_order_to_the_end_of_the_range(void) {
+    static const struct {
+        double mass_kg, radius_m, yaw_inertia_kgm2, inertia_kgm2, gain, damping, wheel[3][3];
+        laconic_status status;
+    } cases[] = {{0x1.001802p-13,
+                  1,
+                  0x1.001802p-13,
+                  0x1.c2b99cp-17,
+                  0x1.556aaap+49,
+                  0x1.7ded82p+23,
+                  {{0, 1.75, 1}, {0.5, 1.5, 1.25}, {1.75, 1.5, 1}},
+                  LACONIC_OK},
+                 {0x1.ffffbep+38,
+                  0x1p-20,
+                  0x1.c28f5cp-1,
+                  0x1.851e86p-3,
+                  0x1.c71c48p+60,
+                  0x1.052b4cp+12,
+                  {{1.25, 0, 1}, {0.5, 1.5, 0}, {1, 0.5, 0.75}},
+                  LACONIC_OVERFLOW},
+                 {0x1.ffffbep+38,
+                  0x1p-20,
+                  0x1.ccccccp-1,
+                  0x1.0a3d4ep-3,
+                  0x1.c71c48p+60,
+                  0x1.5df1a2p+11,
+                  {{1.75, 1, 1.5}, {0, 1, 0.75}, {1.5, 0.5, 2.75}},
+                  LACONIC_OVERFLOW},
+                 {0x1.ffffbep+38,
+                  0x1p-20,
+                  0x1.ccccccp-1,
+                  0x1.0a3d4ep-3,
+                  0x1.c71c48p+60,
+                  0x1.5df1ap+11,
+                  {{1.75, 1, 1.5}, {0, 1, 0.75}, {1.5, 0.5, 2.75}},
+                  LACONIC_OK}};
+    for (size_t n = 0; n < sizeof cases / sizeof cases[0] && !IN_DOUBLE; n++) {
+        laconic_vehicle v = bare_body();
+        laconic_model model;
+        v.mass_kg = REAL(cases[n].mass_kg);
+        v.wheel_radius_m = REAL(cases[n].radius_m);
+        v.yaw_inertia_kgm2 = REAL(cases[n].yaw_inertia_kgm2);
+        v.wheel_inertia_kgm2 = REAL(cases[n].inertia_kgm2);
+        v.motor_gain_Nm_per_V = REAL(cases[n].gain);
+        v.motor_damping_Nms = REAL(cases[n].damping);
+        for (int i = 0; i < 3; i++) {
+            const double *at = cases[n].wheel[i], radius_m = cases[n].radius_m;
+            add_wheel(&v, LACONIC_WHEEL_ROLLER, at[0] * radius_m, at[1] * radius_m, at[2], PI / 2);
+        }
+        ASSERT_STATUS(cases[n].status, laconic_prepare(&model, &v, &why));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(axes_are_the_same_without_damping_where_rows_hardly_are_numbers);
@@ -209,5 +264,6 @@ int main(void) {
     RUN_TEST(in_single_roots_beside_squares_count_at_the_end_of_the_range);
     RUN_TEST(in_single_roots_of_inertias_count_at_the_end_of_the_range);
     RUN_TEST(in_single_the_turn_of_w_counts_at_the_end_of_the_range);
+    RUN_TEST(in_single_sizes_add_up_in_their_order_to_the_end_of_the_range);
     return UNITY_END();
 }
