@@ -150,7 +150,7 @@ static inline uint8_t bench_open(uint32_t session) {
 }
 
 static inline void bench_begin(void) {
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 1905,
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, laconic_method_by_number, 1905,
                                         laconic_drive_protocol_by_number};
     now_us = 0xFFFFF000U; /* the time wraps in the first milliseconds of each test */
     laconic_node_init(&node, &config, now_us);

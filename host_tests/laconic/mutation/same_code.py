@@ -11,6 +11,7 @@ from laconic.mutation.operators import Change
 from laconic.mutation.programs import Unit
 
 SAME = "The compiler makes the same bytes of it as without it."
+SAME_AS_A_ROW = "The compiler makes the same bytes of it as of a row"
 
 
 class SameCode:
@@ -25,7 +26,7 @@ class SameCode:
         if not units:
             return None
         own, changed, of_rows = self._listed.beside(file, change)
-        left = {own: SAME} | of_rows
+        left = {own: SAME} | {text: f"{SAME_AS_A_ROW}: {reason}" for text, reason in of_rows.items()}
         path = self._tree / file
         before = path.read_bytes()
         try:

@@ -18,6 +18,11 @@ from laconic.soak import StoppedEarly
 OPTIONS = ("sample", "survivors", "only", "faults")
 
 
+def length(faults: Path | None = None, **_: Any) -> float | None:
+    """Of `--faults`, how many there are."""
+    return None if faults is None else float(len(read_faults(faults)))
+
+
 def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: int | None = None,
          survivors: int | None = None, only: str | None = None, faults: Path | None = None) -> dict[str, Any]:
     """Until the time is over or all were tried; passed when no more than `survivors` are outside of the list of
@@ -26,7 +31,7 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: in
     if faults is not None:
         if sample is not None or only is not None:
             raise BadInput(f"--faults {faults}: asks about each of its lines; leave out --sample and --only")
-        return asked(faults, most, lambda share: advance(60.0 * minutes * share))
+        return asked(faults, most, advance)
     campaign = Campaign(only, seed)
     began = last = time.monotonic()
 
@@ -57,7 +62,7 @@ def asked(path: Path, most: int, advance: Callable[[float], None]) -> dict[str, 
             outside.append(str(fault))
         else:
             within.append(f"{fault}: {reason}")
-        advance(1.0 / len(faults))
+        advance(1.0)
     return {"passed": len(outside) <= most, "faults": len(faults), "outside the list": outside, "in the list": within}
 
 

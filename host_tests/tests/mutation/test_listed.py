@@ -12,7 +12,7 @@ from laconic.mutation.equivalent import Equivalent, read_equivalents
 from laconic.mutation.faults import read_faults
 from laconic.mutation.listed import BY_LAW, BY_SIGN, NO_CODE, Listed
 from laconic.paths import SOURCE_DIR
-from laconic.soak.mutants import soak
+from laconic.soak.mutants import length, soak
 
 SOURCE = """\
 #define HALF 2 /* of all */
@@ -94,7 +94,7 @@ def test_another_samplers_faults_are_told_with_their_reason_or_as_outside(projec
     path.write_text("\n".join(map(json.dumps, rows)) + "\n\n")
     came: list[float] = []
     said = soak(1.0, 1, came.append, faults=path)
-    assert not said["passed"] and said["faults"] == 2 and came == [30.0, 30.0]
+    assert not said["passed"] and said["faults"] == 2 and came == [1.0, 1.0] and length(faults=path) == 2.0
     assert said["outside the list"] == ["a.c:10:20: -  →  *"]
     assert said["in the list"] == ["a.c:6:11: >  →  >=: At 7 it is 7."]
     assert soak(1.0, 1, lambda _: None, survivors=1, faults=path)["passed"]
@@ -121,6 +121,7 @@ def test_a_line_that_is_no_fault_is_refused_by_its_number(project, line, said):
 def test_without_a_file_or_with_another_samples_options_it_says_so(project):
     with pytest.raises(BadInput, match="cannot be read"):
         read_faults(project / "none.jsonl")
+    assert length(sample=3) is None
     with pytest.raises(BadInput, match="leave out --sample and --only"):
         soak(1.0, 1, lambda _: None, sample=3, faults=project / "a.c")
 

@@ -7,7 +7,7 @@ import pytest
 from laconic.mutation.compiled import Compiled
 from laconic.mutation.equivalent import Equivalent
 from laconic.mutation.listed import Listed
-from laconic.mutation.same_code import SAME, SameCode
+from laconic.mutation.same_code import SAME, SAME_AS_A_ROW, SameCode
 
 LIMIT = "static inline int limited(int a) { /* to five */\n    if (a > 5) a = 5;\n    return a;\n}\n"
 LIBRARY = {"limit.h": LIMIT, "first.c": '#include "limit.h"\nint first(int a) { return limited(a); }\n',
@@ -16,6 +16,7 @@ TEST = "int first(int a);\nint main(void) { return first(7) != 5; }\n"
 ROWS = [Equivalent("core_c/limit.h", "limited", "if (a > 5) a = 5;", "if (a >= 4) a = 5;", "Nobody gives a 4."),
         Equivalent("core_c/limit.h", "limited", "if (a > 5) a = 5;", "if (a >= 9) …", "Any text."),
         Equivalent("core_c/limit.h", "limited", "return a;", "return a + 0;", "Another line.")]
+OF_THE_ROW = f"{SAME_AS_A_ROW}: {ROWS[0].reason}"
 
 
 @pytest.fixture
@@ -33,7 +34,7 @@ def asked(trials_of):
 
 
 @pytest.mark.parametrize(("before", "after", "why"), [
-    ("a > 5", "a >= 5 + 1", SAME), ("a > 5", "a > 3", ROWS[0].reason), ("a > 5", "!(a < 4)", ROWS[0].reason),
+    ("a > 5", "a >= 5 + 1", SAME), ("a > 5", "a > 3", OF_THE_ROW), ("a > 5", "!(a < 4)", OF_THE_ROW),
     ("a > 5", "a > 4", SAME), ("a = 5", "a = 4", None), ("a > 5", "a >= 9", None),
     ("return a", "return a * 1", SAME), ("return a", "return a + 1", None), ("return a;", "return (a;", None)])
 def test_a_fault_is_what_is_compiled_to_the_same_bytes(asked, before, after, why):

@@ -89,7 +89,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("shared")
     tools = folder / "tools"
     tools.mkdir()
-    for name in ("cmake", "make", "gcc", "cc", "as", "ld", "ar", "ranlib", "ccache"):
+    for name in ("cmake", "make", "ninja", "gcc", "cc", "as", "ld", "ar", "ranlib", "ccache"):
         if found := shutil.which(name):
             (tools / name).symlink_to(Path(found).resolve() if name == "cmake" else found)
     compiler = f"-DCMAKE_C_COMPILER={shutil.which('gcc')}"

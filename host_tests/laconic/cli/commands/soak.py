@@ -111,14 +111,14 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     usual = getattr(module, "SEED", None) or random.SystemRandom().randrange(2**31)
     chosen = usual if seed is None else seed
     more = own_options(what, module, special)
-    length = module.length(**more) if hasattr(module, "length") else 60.0 * minutes
+    length = module.length(**more) if hasattr(module, "length") else None
+    by_time = {"minutes": minutes, "seed": chosen} if length is None else {}
     stopped: BaseException | None = None
     try:
-        with progress_bar(f"soak {what}", length) as advance:
+        with progress_bar(f"soak {what}", 60.0 * minutes if length is None else length) as advance:
             result = module.soak(minutes, chosen, advance, **more)
     except laconic.soak.StoppedEarly as early:
         result, stopped = {"stopped": "early, so this is what was found until then", **early.result}, early.__cause__
-    by_time = {} if hasattr(module, "length") else {"minutes": minutes, "seed": chosen}
     _show({"what": what, **by_time, **result}, json_wanted)
     if stopped is not None:
         raise stopped

@@ -1,0 +1,79 @@
+/* Tests of a node that was built without CAN FD (LACONIC_NODE_CAN_FD=0), whose frames have room for eight bytes. */
+#include "bench.h"
+#include "laconic_node/slcan.h"
+#include "unity.h"
+
+void setUp(void) { bench_begin(); }
+void tearDown(void) {}
+
+/* Whatever a frame of CAN FD says of itself: its numbers would not fit. */
+static void frames_of_can_fd_are_malformed_and_change_nothing(void) {
+    uint16_t frames = 0;
+    for (uint32_t offset = 0; offset < LACONIC_WIRE_RIG_OFFSETS; offset++) {
+        if (laconic_wire[offset].fd == 0) continue;
+        for (int kind = 0; kind < 4; kind++) {
+            const laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + offset,
+                                         .length = kind & 1 ? laconic_wire[offset].length : 8,
+                                         .fd = kind >= 2};
+            laconic_node_on_frame(&node, &frame, now_us);
+            TEST_ASSERT_EQUAL_UINT16(++frames, node.counters.malformed);
+            TEST_ASSERT_TRUE(node.counters.crc_errors == 0 && node.counters.refused == 0);
+        }
+    }
+    TEST_ASSERT_TRUE(frames > 0);
+}
+
+static void it_is_loaded_and_steps_by_classic_frames(void) {
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_start_lockstep());
+    bench_voltage(0, 1000, 0);
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.malformed);
+}
+
+static void no_frame_of_can_fd_can_be_asked_for(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_POSE, 0, 0));
+    TEST_ASSERT_TRUE(bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0) != 0);
+    TEST_ASSERT_TRUE(node.send == LACONIC_NODE_SEND_POSE);
+}
+
+static void it_does_not_begin_on_a_bus_of_can_fd(void) {
+    laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 1905, NULL};
+    TEST_ASSERT_FALSE(laconic_node_init(&node, &config, now_us));
+    config.can_fd = false;
+    TEST_ASSERT_TRUE(laconic_node_init(&node, &config, now_us));
+}
+
+static void slcan_refuses_lines_of_can_fd(void) {
+    const char *const lines[] = {"t2009112233445566778899\r",
+                                 "d20081122334455667788\r",
+                                 "b20081122334455667788\r",
+                                 "d20090011223344556677889900AABB\r",
+                                 "O\r",
+                                 "t20081122334455667788\r"};
+    const laconic_slcan_event wanted[] = {LACONIC_SLCAN_REPLY, LACONIC_SLCAN_REPLY, LACONIC_SLCAN_REPLY,
+                                          LACONIC_SLCAN_REPLY, LACONIC_SLCAN_REPLY, LACONIC_SLCAN_FRAME};
+    laconic_slcan slcan;
+    laconic_slcan_init(&slcan, 0);
+    for (int round = 0; round < 2; round++)
+        for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+            laconic_slcan_event event = LACONIC_SLCAN_NOTHING;
+            laconic_frame frame = {0};
+            for (const char *c = lines[k]; *c != 0; c++) event = laconic_slcan_feed(&slcan, *c, &frame);
+            TEST_ASSERT_EQUAL(wanted[k], event);
+            if (wanted[k] == LACONIC_SLCAN_FRAME) TEST_ASSERT_TRUE(frame.length == 8 && !frame.fd);
+            if (k < 4) TEST_ASSERT_EQUAL_STRING("\a", slcan.reply);
+        }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(frames_of_can_fd_are_malformed_and_change_nothing);
+    RUN_TEST(it_is_loaded_and_steps_by_classic_frames);
+    RUN_TEST(no_frame_of_can_fd_can_be_asked_for);
+    RUN_TEST(it_does_not_begin_on_a_bus_of_can_fd);
+    RUN_TEST(slcan_refuses_lines_of_can_fd);
+    return UNITY_END();
+}
