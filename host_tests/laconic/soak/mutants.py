@@ -18,9 +18,13 @@ from laconic.soak import StoppedEarly
 OPTIONS = ("sample", "survivors", "only", "faults")
 
 
-def length(faults: Path | None = None, **_: Any) -> float | None:
+def length(sample: int | None = None, only: str | None = None, faults: Path | None = None, **_: Any) -> float | None:
     """Of `--faults`, how many there are."""
-    return None if faults is None else float(len(read_faults(faults)))
+    if faults is None:
+        return None
+    if sample is not None or only is not None:
+        raise BadInput(f"--faults {faults}: asks about each of its lines; leave out --sample and --only")
+    return float(len(read_faults(faults)))
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: int | None = None,
@@ -29,8 +33,6 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: in
     equivalents."""
     most = survivors or 0
     if faults is not None:
-        if sample is not None or only is not None:
-            raise BadInput(f"--faults {faults}: asks about each of its lines; leave out --sample and --only")
         return asked(faults, most, advance)
     campaign = Campaign(only, seed)
     began = last = time.monotonic()

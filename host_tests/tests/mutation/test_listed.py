@@ -123,7 +123,7 @@ def test_without_a_file_or_with_another_samples_options_it_says_so(project):
         read_faults(project / "none.jsonl")
     assert length(sample=3) is None
     with pytest.raises(BadInput, match="leave out --sample and --only"):
-        soak(1.0, 1, lambda _: None, sample=3, faults=project / "a.c")
+        length(sample=3, faults=project / "a.c")
 
 
 def test_the_row_that_the_page_shows_is_a_row_of_the_list(tmp_path):
