@@ -7,8 +7,6 @@
 
 bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us) {
     if (config->id_base % LACONIC_NODE_ID_STRIDE != 0 || config->id_base > 0x7E0U) return false;
-    /* Frames have no room for it; a condition cannot be reached: the second is a constant of the build. */
-    if (config->can_fd && !LACONIC_NODE_CAN_FD) return false;
     memset(node, 0, sizeof *node);
     node->config = *config;
     node->state = LACONIC_WIRE_STATE_EMPTY;

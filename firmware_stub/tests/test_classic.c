@@ -39,13 +39,6 @@ static void no_frame_of_can_fd_can_be_asked_for(void) {
     TEST_ASSERT_TRUE(node.send == LACONIC_NODE_SEND_POSE);
 }
 
-static void it_does_not_begin_on_a_bus_of_can_fd(void) {
-    laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 1905, NULL};
-    TEST_ASSERT_FALSE(laconic_node_init(&node, &config, now_us));
-    config.can_fd = false;
-    TEST_ASSERT_TRUE(laconic_node_init(&node, &config, now_us));
-}
-
 static void slcan_refuses_lines_of_can_fd(void) {
     const char *const lines[] = {"t2009112233445566778899\r",
                                  "d20081122334455667788\r",
@@ -73,7 +66,6 @@ int main(void) {
     RUN_TEST(frames_of_can_fd_are_malformed_and_change_nothing);
     RUN_TEST(it_is_loaded_and_steps_by_classic_frames);
     RUN_TEST(no_frame_of_can_fd_can_be_asked_for);
-    RUN_TEST(it_does_not_begin_on_a_bus_of_can_fd);
     RUN_TEST(slcan_refuses_lines_of_can_fd);
     return UNITY_END();
 }

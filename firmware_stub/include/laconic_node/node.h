@@ -126,8 +126,7 @@ typedef struct laconic_node {
 #define LACONIC_NODE_SEND_ENCODER 128U
 #define LACONIC_NODE_ESTIMATE_PAGES 8U
 
-/* False iff the ID base is no multiple of 32 or beyond 0x7E0, or the bus is one of CAN FD and the build without it
- * (LACONIC_NODE_CAN_FD 0); the node is then not usable. */
+/* False iff the ID base is no multiple of 32 or beyond 0x7E0; the node is then not usable. */
 bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us);
 
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us);
