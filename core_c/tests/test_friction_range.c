@@ -329,40 +329,41 @@ static void in_single_masses_across_rollers_add_up_behind_the_wheels_inertia(voi
     }
 }
 
+typedef struct wheel_in_range {
+    double x_m, y_m, radius_m, inertia_kgm2;
+    laconic_status status;
+} wheel_in_range;
+
+/* With this as its wheel. */
+static void assert_status_with(laconic_vehicle v, const wheel_in_range *wheel) {
+    v.wheel[0].x_m = REAL(wheel->x_m);
+    v.wheel[0].y_m = REAL(wheel->y_m);
+    v.wheel[0].own_radius_m = REAL(wheel->radius_m);
+    v.wheel_inertia_kgm2 = REAL(wheel->inertia_kgm2);
+    ASSERT_STATUS(wheel->status, status_of(&v));
+}
+
 /* Beside the height of the centre of mass the wheel's constants are half a place, which their last digits decide. */
 static void in_single_levers_come_before_what_a_light_wheel_turns_by(void) {
-    static const struct {
-        double x_m, y_m, radius_m, inertia_kgm2;
-        laconic_status status;
-    } wheels[] = {{480350, 333296, 0x1.110042p-1, 0x1.b2a2f4p-68, LACONIC_OVERFLOW},
-                  {484426, 208895, 0x1.9e51e4p+0, 0x1.d5206cp-67, LACONIC_OK}};
+    static const wheel_in_range wheels[] = {{480350, 333296, 0x1.110042p-1, 0x1.b2a2f4p-68, LACONIC_OVERFLOW},
+                                            {484426, 208895, 0x1.9e51e4p+0, 0x1.d5206cp-67, LACONIC_OK}};
     for (size_t n = 0; n < sizeof wheels / sizeof wheels[0] && !IN_DOUBLE; n++) {
         laconic_vehicle v = light_unicycle();
         v.com_z_m = RANGE - PLACE;
-        v.wheel[0].x_m = REAL(wheels[n].x_m);
-        v.wheel[0].y_m = REAL(wheels[n].y_m);
-        v.wheel[0].own_radius_m = REAL(wheels[n].radius_m);
-        v.wheel_inertia_kgm2 = REAL(wheels[n].inertia_kgm2);
-        ASSERT_STATUS(wheels[n].status, status_of(&v));
+        assert_status_with(v, &wheels[n]);
     }
 }
 
 /* The contact's mass along the wheel is at most 1, but decides whether the wheel's constants are half a place of the
  * centre of mass's height, and with this whether that is half a place of the gain. */
 static void in_single_the_mass_along_a_wheel_counts_where_larger_constants_are_near_half_a_place(void) {
-    static const struct {
-        double x_m, y_m, radius_m, inertia_kgm2;
-        laconic_status status;
-    } wheels[] = {{23, 6, 1.8, 0x1.19ac34p-42, LACONIC_OVERFLOW}, {27, 1, 1.15, 0x1.37d2dp-43, LACONIC_OK}};
+    static const wheel_in_range wheels[] = {{23, 6, 1.8, 0x1.19ac34p-42, LACONIC_OVERFLOW},
+                                            {27, 1, 1.15, 0x1.37d2dp-43, LACONIC_OK}};
     for (size_t n = 0; n < sizeof wheels / sizeof wheels[0] && !IN_DOUBLE; n++) {
         laconic_vehicle v = light_unicycle();
         v.com_z_m = REAL(0x1p39 - 0x1p15);
         v.motor_gain_Nm_per_V = (RANGE - PLACE) * UNIT;
-        v.wheel[0].x_m = REAL(wheels[n].x_m);
-        v.wheel[0].y_m = REAL(wheels[n].y_m);
-        v.wheel[0].own_radius_m = REAL(wheels[n].radius_m);
-        v.wheel_inertia_kgm2 = REAL(wheels[n].inertia_kgm2);
-        ASSERT_STATUS(wheels[n].status, status_of(&v));
+        assert_status_with(v, &wheels[n]);
     }
 }
 
