@@ -27,8 +27,10 @@ class Asked:
         self._asked = re.compile(rf"\b(?:{'|'.join(sorted(asking))})\b{OPERAND}")
         self._of_file = {file: self._names(text) for file, text in sources.items()}
 
-    def by(self, file: str) -> set[str]:
-        """By those that may know an array of this file: itself, but of a header all of them."""
+    def by(self, file: str) -> set[str] | None:
+        """By those that may know an array of this file: itself, but of a header all of them. None: it is no source."""
+        if file not in self._of_file:
+            return None
         return self._of_file[file] if file.endswith(".c") else set().union(*self._of_file.values())
 
     def _names(self, text: str) -> set[str]:

@@ -58,8 +58,8 @@ class Listed:
         return self._of(file).reason(change) is not None
 
     def _by_length(self, file: str, change: Change) -> str | None:
-        names = self._of(file).longer_arrays(change)
-        return BY_LENGTH if names and not names.intersection(self._lengths.by(file)) else None
+        names, asked = self._of(file).longer_arrays(change), self._lengths.by(file)
+        return BY_LENGTH if names and asked is not None and not names & asked else None
 
     @cached_property
     def _lengths(self) -> Asked:

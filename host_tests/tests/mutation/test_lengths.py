@@ -44,6 +44,14 @@ ALL(c->e) R(f); z = COUNT(g(h(i), j)) + R(k);
     asked = Asked({"a.h": header, "a.c": text, "b.c": "x = sizeof l;"})
     assert asked.by("a.c") == {"of", "b", "d", "c", "e", "g", "h", "i", "j"}
     assert asked.by("a.h") == asked.by("a.c") | {"l"} and asked.by("b.c") == {"l"}
+    assert asked.by("c.c") is None
+
+
+@pytest.mark.parametrize("file", ["core_c/tests/a.c", "packages/a.c"])
+def test_of_an_array_outside_of_the_product_nothing_is_known(tmp_path, file):
+    (tmp_path / file).parent.mkdir(parents=True)
+    (tmp_path / file).write_text("int own[3];\n")
+    assert Listed([], tmp_path).reason(file, (8, 9, "4")) is None
 
 
 @pytest.mark.parametrize(("before", "after", "why"), [
