@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.population.collocation import exact_start, true_states
+from laconic.benchmark.collocation import exact_start, true_states
 from laconic.verification.derivatives.trials import INPUTS
 
 
