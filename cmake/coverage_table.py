@@ -20,8 +20,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/assurance.md"
-PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter", "core_c/estimate"),
-         "node": ("firmware_stub/src",),
+PARTS = {"core": ("core_c/src", "core_c/optional/derivatives", "core_c/optional/filter", "core_c/optional/estimate"),
+         "node": ("firmware_stub/node", "firmware_stub/wire"),
          "drives": ("firmware_stub/drives", *(f"firmware_stub/drives/{protocol}" for protocol in
                                               ("canopen", "moteus", "odrive", "robomaster"))),
          "commands": ("firmware_stub/secure",),

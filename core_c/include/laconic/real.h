@@ -2,7 +2,7 @@
  *
  * Everything that differs between builds of the core is decided here and nowhere else:
  *   LACONIC_SINGLE         float instead of double
- *   LACONIC_LANES          core_c/batch alone, which has its own numbers and words: for many vehicles at once
+ *   LACONIC_LANES          core_c/optional/batch alone, which has its own numbers and words: for many vehicles at once
  *   LACONIC_SCENE_HEADER   a generated header that fixes the constants below for one scene
  * Plain `if` tests the constants, so compilers check also the code that they then drop. */
 #ifndef LACONIC_REAL_H

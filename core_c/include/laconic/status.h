@@ -97,7 +97,7 @@
     X(FLUSHED, /* FTZ, DAZ, FPSCR.FZ, or a library linked with -ffast-math, which sets them for the whole process */ \
       "subnormal numbers are flushed to zero; clear the flush-to-zero and denormals-are-zero modes") \
     X(SUBTRACTED_WRONGLY, /* libgcc on Arm processors without double precision */ \
-      "the compiler's library rounds some differences wrongly; link soft_double.c (core_c/soft_double)")
+      "the compiler's library rounds some differences wrongly; link soft_double.c (core_c/optional/soft_double)")
 
 /* clang-format on */
 
