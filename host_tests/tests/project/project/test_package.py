@@ -15,9 +15,7 @@ from laconic.base.paths import SOURCE_DIR
 
 PAGE = (SOURCE_DIR / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
-PACKAGES = [SOURCE_DIR / "host_tests" / "laconic", SOURCE_DIR / "fmu" / "laconic_fmu",
-            SOURCE_DIR / "firmware_stub" / "laconic_build.wire", SOURCE_DIR / "web" / "page" / "laconic_build.page",
-            SOURCE_DIR / "packages" / "python" / "laconic_build.wheel"]
+PACKAGES = [SOURCE_DIR / "python" / "laconic", SOURCE_DIR / "python" / "laconic_fmu", SOURCE_DIR / "packaging" / "laconic_build"]
 FILES = [path for package in PACKAGES for path in sorted(package.rglob("*.py"))]
 
 
