@@ -46,8 +46,6 @@ def test_a_program_that_steps_with_one_method_holds_no_other_and_no_refusals(tmp
 @pytest.mark.parametrize("path", C_TESTS, ids=lambda path: path.stem)
 def test_every_test_that_is_written_is_run(path) -> None:
     text = path.read_text(encoding="utf-8")
-    written = set(re.findall(r"^static void (\w+)\(void\) \{", text, re.MULTILINE))
-    called = set(re.findall(r"\b(\w+)\(", re.sub(r"^static void \w+\(void\) \{", "", text, flags=re.MULTILINE)))
-    run = set(re.findall(r"RUN_TEST\((\w+)\)", text))
-    assert written - called - run == set()
-    assert run
+    head = re.compile(r"^static void (\w+)\(void\) \{", re.MULTILINE)
+    assert set(head.findall(text)) - set(re.findall(r"\w+", head.sub("", text))) == set()
+    assert "RUN_TEST(" in text
