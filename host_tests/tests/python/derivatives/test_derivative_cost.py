@@ -8,6 +8,8 @@ from laconic.base.paths import built
 from laconic.tools.report.counting import cachegrind_present, instructions_of
 from laconic.tools.verify.exact.trials import METHODS
 
+pytestmark = pytest.mark.nightly
+
 FEW, MANY = 100, 300  # calls: what a count of one run has in common with another's cancels
 LIMIT = 6.0           # steps
 LIMITS = {"exponential-gauss-8": 6.6}  # rounds at four nodes, in which a direction costs as much as the step

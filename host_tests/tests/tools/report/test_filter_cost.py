@@ -10,6 +10,8 @@ from laconic.scene import read_scene
 from laconic.tools.report import filter_cost
 from laconic.tools.report.workshop import M4F, Workshop
 
+pytestmark = pytest.mark.nightly
+
 MOST = {"predict": 27_000, "encoders": 7_000, "yaw_rate": 3_500}  # instructions, of three wheels by rk4
 MOST_STACK, MOST_FLASH, MOST_RAM = 3_000, 30_000, 2_048           # bytes, of one method
 MOST_WHOLE = 115_000                                              # of all methods
