@@ -283,14 +283,19 @@ const char *laconic_articulated_method_name(int32_t method);
 /* The method of that name; −1: there is none. */
 int32_t laconic_articulated_method_by_name(const char *name);
 
+/* Factors of an exponential step, per velocity, with a = h r and φ at −a. */
+typedef struct laconic_articulated_factors {
+    laconic_real correction[LACONIC_MAX_VELOCITIES]; /* h (r/(1 − e^−a) − 1/h − r/2): makes a midpoint step exponential */
+    laconic_real mean[LACONIC_MAX_VELOCITIES];       /* κ = φ2/φ1                                                    */
+    laconic_real slope[LACONIC_MAX_VELOCITIES];      /* 12 (φ2/2 − φ3)/φ1                                            */
+} laconic_articulated_factors;
+
 /* One method prepared for one step size. */
 typedef struct laconic_articulated_integrator {
     laconic_articulated_method method;
-    laconic_real step_s, rate_per_step; /* h, 1/h */
-    int32_t parts;                      /* of auto: into how many parts damping alone divides a step    */
-    laconic_real correction[3][LACONIC_MAX_VELOCITIES]; /* of moebius-4, for h, h/2, h/4: what makes the diagonal
-                                                           exponential, per velocity                     */
-    laconic_real mean[3][LACONIC_MAX_VELOCITIES];       /* κ = φ2/φ1 likewise                            */
+    laconic_real step_s, rate_per_step;     /* h, 1/h                                     */
+    int32_t parts;                          /* of auto: how many the fastest decay asks for */
+    laconic_articulated_factors factors[2]; /* of moebius-4: for h and h/2                  */
 } laconic_articulated_integrator;
 
 /* Refuses METHOD_UNKNOWN, NOT_FINITE, NOT_POSITIVE, OVERFLOW (the step) and for rk4 and circle

@@ -11,9 +11,6 @@
 
 #if LACONIC_MAX_BODIES > 0
 
-#define LARGEST_CASTER_RATE R(2.785) /* h·rate: |Σ (−a)ⁿ/n!| to n = 4 exceeds 1 beyond      */
-#define LARGEST_TURN R(2.828)        /* h·yaw rate: |Σ (ia)ⁿ/n!|, beyond; each map is below π, too */
-
 static const real stage_at[4] = {R(0), R(0.5), R(0.5), R(1)};
 static const real stage_weight[4] = {R(1) / R(6), R(1) / R(3), R(1) / R(3), R(1) / R(6)};
 
@@ -27,13 +24,13 @@ typedef struct stage_sums {
 
 /* Casters and yaw rates that are too fast for a stable step. */
 static laconic_status check_rates(const articulated_sweep *s, const laconic_articulated_model *m, real h, bool circle,
-                                  laconic_refusal *why) {
+                                  real largest, laconic_refusal *why) {
     const posture_rates fast = rates_of_posture(s, m);
-    if (!circle && !(h * h * fast.caster_square <= LARGEST_CASTER_RATE * LARGEST_CASTER_RATE))
+    if (!circle && !(h * h * fast.caster_square <= largest * largest))
         return refuse(why, LACONIC_STEP_BEYOND_TRAIL_LIMIT, LACONIC_FIELD_STEP, 0, h,
-                      LARGEST_CASTER_RATE / laconic_root(fast.caster_square));
-    if (!(h * fast.yaw <= LARGEST_TURN))
-        return refuse(why, LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0, h, LARGEST_TURN / fast.yaw);
+                      largest / laconic_root(fast.caster_square));
+    if (!(h * fast.yaw <= largest))
+        return refuse(why, LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0, h, largest / fast.yaw);
     return LACONIC_OK;
 }
 
@@ -95,7 +92,7 @@ INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconi
 
 INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_state *state,
                                   const laconic_articulated_model *m, const articulated_course *course, real from,
-                                  real share, bool circle, laconic_refusal *why) {
+                                  real share, bool circle, real largest, laconic_refusal *why) {
     articulated_sweep s, start;
     articulated_drive room;
     const real h = share * course->step_s;
@@ -115,7 +112,7 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
         const articulated_drive *drive = drive_at(&room, course, m, from + share * stage_at[g]);
         const real ahead = h * (g < 3 ? stage_at[g + 1] : R(0));
         laconic_status status = accelerations(rate, &s, m, eta, drive, facing, why);
-        if (status == LACONIC_OK && g == 0) status = check_rates(&s, m, h, circle, why);
+        if (status == LACONIC_OK && g == 0) status = check_rates(&s, m, h, circle, largest, why);
         if (status != LACONIC_OK) return status;
         if (g == 0) sums->by.bend = scaled(R(-1), s.twist[0]);
         if (drive->rotates) facing = turned_by(heading, ahead * s.twist[0].z);
@@ -129,23 +126,23 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
 
 static laconic_status plain_stages(stage_sums *sums, const laconic_articulated_state *state,
                                    const laconic_articulated_model *m, const articulated_course *course, real from,
-                                   real share, laconic_refusal *why) {
-    return runge_kutta(sums, state, m, course, from, share, false, why);
+                                   real share, real largest, laconic_refusal *why) {
+    return runge_kutta(sums, state, m, course, from, share, false, largest, why);
 }
 
 static laconic_status circle_stages(stage_sums *sums, const laconic_articulated_state *state,
                                     const laconic_articulated_model *m, const articulated_course *course, real from,
-                                    real share, laconic_refusal *why) {
-    return runge_kutta(sums, state, m, course, from, share, true, why);
+                                    real share, real largest, laconic_refusal *why) {
+    return runge_kutta(sums, state, m, course, from, share, true, largest, why);
 }
 
 laconic_status laconic_articulated_rk4(laconic_articulated_state *state, const laconic_articulated_model *m,
                                        const articulated_course *course, real from, real share, bool circle,
-                                       laconic_refusal *why) {
+                                       real largest, laconic_refusal *why) {
     stage_sums sums;
     articulated_drive room;
-    laconic_status status = circle ? circle_stages(&sums, state, m, course, from, share, why)
-                                   : plain_stages(&sums, state, m, course, from, share, why);
+    laconic_status status = circle ? circle_stages(&sums, state, m, course, from, share, largest, why)
+                                   : plain_stages(&sums, state, m, course, from, share, largest, why);
     if (status != LACONIC_OK) return status;
     if (m->coordinated)
         laconic_articulated_turn_coordinated(&sums.by, m, state, drive_at(&room, course, m, from + share));

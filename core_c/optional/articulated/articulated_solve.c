@@ -126,18 +126,37 @@ static laconic_status refuse_massless(const laconic_articulated_model *m, int32_
     return refuse(why, LACONIC_MASSLESS_HINGE, (laconic_field)LACONIC_FIELD_OF_BODY_YAW_INERTIA, body, R(0), R(0));
 }
 
+/* Factors the mass, keeps the rows that count and moves y onto them. */
+static laconic_status factor_and_keep(factored *f, kept_rows *k, real *y, const articulated_sweep *s,
+                                      const laconic_articulated_model *m, const real *target, laconic_refusal *why) {
+    const int32_t massless = factor(f, s, m->dof);
+    if (massless >= 0) return refuse_massless(m, massless, why);
+    k->count = 0;
+    forward(y, f, s->push);
+    for (int32_t r = 0; r < m->row_count; r++)
+        if (!keep_row(k, f, y, s->left[r], target[r], r) || k->count == m->dof) return refuse_rows(m, k, r, why);
+    return LACONIC_OK;
+}
+
+laconic_status laconic_articulated_keep_rows(int32_t kept[], int32_t *count, const articulated_sweep *s,
+                                             const laconic_articulated_model *m, const real *target,
+                                             laconic_refusal *why) {
+    factored f;
+    kept_rows k;
+    real y[LACONIC_MAX_VELOCITIES];
+    const laconic_status status = factor_and_keep(&f, &k, y, s, m, target, why);
+    *count = k.count;
+    for (int32_t q = 0; status == LACONIC_OK && q < k.count; q++) kept[q] = k.row[q];
+    return status;
+}
+
 laconic_status laconic_articulated_solve(real *x, real *multiplier, const articulated_sweep *s,
                                          const laconic_articulated_model *m, const real *target, laconic_refusal *why) {
     factored f;
     kept_rows k;
     real y[LACONIC_MAX_VELOCITIES];
-    const int32_t massless = factor(&f, s, m->dof);
-    if (massless >= 0) return refuse_massless(m, massless, why);
-    k.count = 0;
-    forward(y, &f, s->push);
-    for (int32_t r = 0; r < m->row_count; r++) {
-        if (!keep_row(&k, &f, y, s->left[r], target[r], r) || k.count == m->dof) return refuse_rows(m, &k, r, why);
-    }
+    const laconic_status status = factor_and_keep(&f, &k, y, s, m, target, why);
+    if (status != LACONIC_OK) return status;
     backward(x, &f, y);
     if (multiplier != NULL) multipliers(multiplier, &k, m->row_count);
     return LACONIC_OK;

@@ -139,10 +139,10 @@ static laconic_status by_method(laconic_articulated_state *state, const laconic_
                                 const laconic_articulated_integrator *integrator, const articulated_course *course,
                                 laconic_refusal *why) {
     switch (integrator->method) {
-    case LACONIC_ARTICULATED_RK4: return laconic_articulated_rk4(state, m, course, R(0), R(1), false, why);
-    case LACONIC_ARTICULATED_CIRCLE: return laconic_articulated_rk4(state, m, course, R(0), R(1), true, why);
+    case LACONIC_ARTICULATED_RK4: return laconic_articulated_rk4(state, m, course, R(0), R(1), false, LARGEST_EXPLICIT_RATE, why);
+    case LACONIC_ARTICULATED_CIRCLE: return laconic_articulated_rk4(state, m, course, R(0), R(1), true, LARGEST_EXPLICIT_RATE, why);
     case LACONIC_ARTICULATED_MOEBIUS_4:
-        return laconic_articulated_moebius_4(state, m, integrator, course, R(0), R(1), 0, why);
+        return laconic_articulated_moebius_4(state, m, integrator->factors, course, R(0), R(1), why);
     default: return laconic_articulated_auto(state, m, integrator, course, why);
     }
 }

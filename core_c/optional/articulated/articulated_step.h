@@ -129,14 +129,23 @@ INLINE posture_rates rates_of_posture(const articulated_sweep *s, const laconic_
     return fast;
 }
 
-/* One part of a step by each method: from the share `from`, of length `share`. */
+/* For steps of h and h/2. */
+void laconic_articulated_factors_of(laconic_articulated_factors factors[2], const laconic_articulated_model *m, real h);
+
+#define LARGEST_EXPLICIT_RATE R(2.785) /* h·rate: |Σ (−a)ⁿ/n!| to n = 4 exceeds 1 beyond, |Σ (ia)ⁿ/n!| later */
+
+/* One part of a step by each method: from the share `from`, of length `share`. rk4 and circle refuse a part in which h
+ * times a caster's or yaw rate is above `largest`. */
 laconic_status laconic_articulated_rk4(laconic_articulated_state *state, const laconic_articulated_model *m,
                                        const articulated_course *course, real from, real share, bool circle,
-                                       laconic_refusal *why);
+                                       real largest, laconic_refusal *why);
 laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, const laconic_articulated_model *m,
-                                             const laconic_articulated_integrator *integrator,
-                                             const articulated_course *course, real from, real share, int32_t level,
+                                             const laconic_articulated_factors factors[2],
+                                             const articulated_course *course, real from, real share,
                                              laconic_refusal *why);
+/* Into how many parts a rate divides a step of auto; more than 256: moebius-4 takes it. */
+int32_t laconic_articulated_parts_for(real rate_step);
+
 laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
                                         const laconic_articulated_integrator *integrator,
                                         const articulated_course *course, laconic_refusal *why);

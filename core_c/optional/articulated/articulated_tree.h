@@ -290,11 +290,29 @@ INLINE void sweep_inward(articulated_sweep *s, const laconic_articulated_model *
     }
 }
 
+/* The same for forces alone, where the inertias of the posture are known: push of own hinges, and the root's force. */
+INLINE void sweep_forces_inward(articulated_sweep *s, const laconic_articulated_model *m) {
+    for (int32_t b = m->body_count; b >= 1; b--) {
+        const laconic_link *link = &m->link[b - 1];
+        if (link->motion == LACONIC_MOTION_OWN) s->push[m->carriage_dof + link->column] = s->force[b].z;
+        s->force[link->parent] = plus(s->force[link->parent], pulled(link, s->toward[b - 1], s->force[b]));
+    }
+}
+
 /* ------------------------------------------------------------------------- the equations in η -- */
 
 /* The columns that the carriage moves along: those of ζ, or the commanded twist alone. */
 static inline const vector *carriage_columns(const articulated_sweep *s, const laconic_articulated_model *m) {
     return m->coordinated ? s->along : m->column;
+}
+
+/* Push of ζ from the force summed at the root. */
+INLINE void push_root(articulated_sweep *s, const laconic_articulated_model *m, const real *eta, bool damped) {
+    const vector *column = carriage_columns(s, m);
+    for (int32_t i = 0; i < m->carriage_dof; i++) {
+        s->push[i] = dot(column[i], s->force[0]);
+        if (LACONIC_WITH_DAMPING && damped && !m->coordinated) s->push[i] -= m->decay_per_s[i] * eta[i];
+    }
 }
 
 /* Mass and push of ζ from what is summed at the root. */
@@ -304,9 +322,8 @@ INLINE void project_root(articulated_sweep *s, const laconic_articulated_model *
         const vector momentum = form_times(&s->inertia[0], column[i]);
         for (int32_t j = 0; j < i; j++) s->mass[i][j] = dot(momentum, column[j]);
         s->mass[i][i] = R(1) + dot(momentum, column[i]);
-        s->push[i] = dot(column[i], s->force[0]);
-        if (LACONIC_WITH_DAMPING && damped && !m->coordinated) s->push[i] -= m->decay_per_s[i] * eta[i];
     }
+    push_root(s, m, eta, damped);
     for (int32_t k = 0; k < m->own_count; k++)
         for (int32_t i = 0; i < m->carriage_dof; i++) s->mass[m->carriage_dof + k][i] = dot(column[i], s->own[k]);
     for (int32_t r = 0; r < m->row_count; r++) {
@@ -319,6 +336,11 @@ INLINE void project_root(articulated_sweep *s, const laconic_articulated_model *
  * κ, which may be NULL. */
 laconic_status laconic_articulated_solve(real *x, real *multiplier, const articulated_sweep *s,
                                          const laconic_articulated_model *m, const real *target, laconic_refusal *why);
+
+/* Numbers of the rows that count, in kept; refuses as laconic_articulated_solve does. */
+laconic_status laconic_articulated_keep_rows(int32_t kept[], int32_t *count, const articulated_sweep *s,
+                                             const laconic_articulated_model *m, const real *target,
+                                             laconic_refusal *why);
 
 /* x for the usual vehicles: one or two velocities and no row left over. */
 INLINE bool solve_small(real *x, const articulated_sweep *s, const laconic_articulated_model *m) {
