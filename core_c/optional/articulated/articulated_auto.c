@@ -4,7 +4,7 @@
  *             yaw rate of each body (of the posture at a part's start)
  *   parts     1, 2, 4 … so that rate · part ≤ ¼: a relaxation is then followed to about 1e-5, slower motion far better
  *   rk4       takes each part, as long as there are at most 256 in a step
- *   moebius-4 beyond that, in 16 parts or as many more (to 256) as casters and yaw ask for. Decay may then be of any
+ *   moebius-4 beyond that, in 64 parts or as many more (to 256) as casters and yaw ask for. Decay may then be of any
  *             rate. A caster that is still too fast is led by exact maps and follows what is slower than a part
  *   halves    a part of moebius-4 that has no solution is taken in halves
  *
@@ -15,7 +15,7 @@
 
 #define WHOLE_STEP ((uint32_t)1 << 20) /* a step, in units in which parts are counted */
 #define MOST_PARTS ((uint32_t)256)
-#define FEWEST_STIFF_PARTS ((uint32_t)16)
+#define FEWEST_STIFF_PARTS ((uint32_t)64)
 #define LARGEST_RATE_OF_PART R(0.25) /* rate · part */
 
 /* Halves a part until the rate fits, no further than `smallest`. */

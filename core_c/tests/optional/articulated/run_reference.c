@@ -200,6 +200,32 @@ static void print_motion(void) {
     printf(" %.17g\n", (double)m.energy_J);
 }
 
+static void print_vectors(const laconic_vector *v, int count) {
+    for (int k = 0; k < count; k++) printf(" %.17g %.17g %.17g", (double)v[k].x, (double)v[k].y, (double)v[k].z);
+}
+
+static void print_rates(void) {
+    laconic_articulated_rates r;
+    const laconic_articulated_input in = input_at(0);
+    check(laconic_articulated_rates_of(&r, &model, &state, &in, &why));
+    print_vectors(r.twist, model.body_count + 1);
+    print_vectors(r.twist_rate, model.body_count + 1);
+    printf("\n");
+}
+
+static void print_reactions(void) {
+    laconic_articulated_reactions r;
+    const laconic_articulated_input in = input_at(0);
+    check(laconic_articulated_reactions_of(&r, &model, &state, &in, NULL, &why));
+    print_many(r.wheel_torque_Nm, model.wheel_count);
+    print_many(r.along_N, model.wheel_count);
+    print_many(r.lateral_N, model.wheel_count);
+    print_many(r.brake_Nm, model.wheel_count);
+    print_many(r.hinge_torque_Nm, model.body_count);
+    print_many(r.hinge_force_N[0], 2 * model.body_count);
+    printf(" %.17g\n", (double)r.balance);
+}
+
 int main(void) {
     char word[32];
     while (scanf("%31s", word) == 1) {
@@ -215,6 +241,10 @@ int main(void) {
             run();
         else if (strcmp(word, "motion") == 0)
             print_motion();
+        else if (strcmp(word, "rates") == 0)
+            print_rates();
+        else if (strcmp(word, "reactions") == 0)
+            print_reactions();
         else
             return 2;
     }
