@@ -149,6 +149,8 @@ typedef struct laconic_link {
     laconic_vector first_moment;    /* m s_ξ, m s_η, m                                                  */
     laconic_form inertia, drag;     /* I_b, D_b                                                         */
     bool drags;                     /* D_b is not 0                                                     */
+    bool is_leaf;                   /* no other body hangs on it                                        */
+    laconic_form followed_inertia, followed_drag; /* of a following hinge: on V alone, ω put in          */
     laconic_vector axle_per_lever;  /* of a following hinge: n/ℓ, and 1/ℓ as z                          */
     laconic_real damping_Nms, stiffness_Nm, rest_rad, gain_Nm_per_V;
 } laconic_link;
@@ -177,8 +179,10 @@ typedef struct laconic_articulated_model {
     int32_t own_count;       /* own hinges                                                                  */
     int32_t dof;             /* m + own_count, before the rows left over                                    */
     int32_t row_count;       /* rows left over                                                              */
+    int32_t last_inner;      /* the last body on which another hangs                                        */
     bool coordinated;        /* some hinge is coordinated: the carriage moves along the twist alone          */
     laconic_vector column[3];     /* X_0 = Σ column_k ζ_k, columns have unit energy                          */
+    laconic_form pair[6];         /* column_iᵀ A column_j = pair · A, for (0,0) (1,0) (1,1) (2,0) (2,1) (2,2) */
     laconic_real decay_per_s[3];  /* r_k of the carriage alone                                               */
     int32_t column_count;         /* of the carriage alone                                                   */
     laconic_real mass_kg;         /* of body 0 with payload                                                  */

@@ -90,21 +90,32 @@ static uint32_t stiff_part_size(const laconic_articulated_state *state, const la
                     rate * course->step_s);
 }
 
+/* Takes what is left of a step in parts, on a copy, as a later part may be refused. */
+RARE laconic_status take_parts(laconic_articulated_state *state, const laconic_articulated_model *m,
+                               const articulated_course *course, auto_progress p, laconic_refusal *why) {
+    laconic_articulated_state after = *state;
+    bool was_stiff = false;
+    while (p.done < WHOLE_STEP) {
+        laconic_refusal found = ALL_ZERO;
+        if (p.stiff && !was_stiff) p.part = stiff_part_size(&after, m, course);
+        was_stiff = p.stiff;
+        const laconic_status status =
+            p.stiff ? stiff_part(&after, m, course, &p, &found) : explicit_part(&after, m, course, &p, &found);
+        if (status != LACONIC_OK) return refuse(why, status, found.field, found.item, found.value, found.limit);
+    }
+    *state = after;
+    return LACONIC_OK;
+}
+
 laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
                                         const laconic_articulated_integrator *integrator,
                                         const articulated_course *course, laconic_refusal *why) {
     auto_progress p = {0U, WHOLE_STEP / (uint32_t)integrator->parts, integrator->parts > (int32_t)MOST_PARTS};
-    bool was_stiff = false;
-    while (p.done < WHOLE_STEP) {
-        laconic_refusal found = ALL_ZERO;
-        if (p.stiff && !was_stiff) p.part = stiff_part_size(state, m, course);
-        was_stiff = p.stiff;
-        const laconic_status status =
-            p.stiff ? stiff_part(state, m, course, &p, &found) : explicit_part(state, m, course, &p, &found);
-        if (status != LACONIC_OK)
-            return refuse(why, status, found.field, found.item, found.value, found.limit);
-    }
-    return LACONIC_OK;
+    laconic_refusal found = ALL_ZERO;
+    if (p.part < WHOLE_STEP) return take_parts(state, m, course, p, why);
+    const laconic_status status = explicit_part(state, m, course, &p, &found);
+    if (status != LACONIC_OK) return refuse(why, status, found.field, found.item, found.value, found.limit);
+    return p.done == WHOLE_STEP ? LACONIC_OK : take_parts(state, m, course, p, why);
 }
 
 int32_t laconic_articulated_parts_for(real rate_step) {

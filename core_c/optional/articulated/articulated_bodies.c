@@ -95,7 +95,7 @@ static void leave_row(laconic_articulated_model *m, int32_t b, vector row, int32
     laconic_left_row *left = &m->row[m->row_count++];
     left->body = b;
     left->wheel = wheel;
-    left->axle = vector_of(row.x, row.y, row.z * m->length_m);
+    left->axle = vector_of(row.x, row.y, magnitude(row.z) > R(8) * LACONIC_EPSILON ? row.z * m->length_m : R(0));
 }
 
 /* The row whose lever is largest; −1: none has one beside the vehicle's size. */
@@ -189,6 +189,25 @@ static void mark_below(laconic_articulated_model *m) {
     }
 }
 
+/* I and D on V alone, with ω = −n·V/ℓ. */
+static laconic_form followed(const laconic_link *link, const laconic_form *f) {
+    const plane_form plane = plane_part(link, f);
+    const laconic_form on_velocity = {plane.xx, plane.xy, plane.yy, R(0), R(0), R(0)};
+    return on_velocity;
+}
+
+static void mark_leaves(laconic_articulated_model *m) {
+    for (int32_t b = 0; b < m->body_count; b++) m->link[b].is_leaf = true;
+    for (int32_t b = 0; b < m->body_count; b++) {
+        laconic_link *link = &m->link[b];
+        link->followed_inertia = followed(link, &link->inertia);
+        link->followed_drag = followed(link, &link->drag);
+        if (link->parent == 0) continue;
+        m->link[link->parent - 1].is_leaf = false;
+        if (link->parent > m->last_inner) m->last_inner = link->parent;
+    }
+}
+
 laconic_status laconic_articulated_links(laconic_articulated_model *m, const laconic_articulated_vehicle *vehicle,
                                          laconic_refusal *why) {
     m->body_count = vehicle->body_count;
@@ -199,6 +218,7 @@ laconic_status laconic_articulated_links(laconic_articulated_model *m, const lac
         if (status != LACONIC_OK) return status;
     }
     mark_below(m);
+    mark_leaves(m);
     return LACONIC_OK;
 }
 

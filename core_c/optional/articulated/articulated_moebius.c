@@ -56,7 +56,7 @@ static void move_hinge(moebius_point *p, const articulated_sweep *s, const lacon
     if (link->motion == LACONIC_MOTION_COORDINATED) return;
     if (link->motion == LACONIC_MOTION_FOLLOWING) {
         p->toward[b - 1] = circle_map(before, circle_flow_of(link, parent), h);
-        turn = laconic_articulated_angle_of(from_to(before, p->toward[b - 1]));
+        turn = laconic_articulated_turn_from_to(before, p->toward[b - 1]);
     } else {
         turn = link->motion == LACONIC_MOTION_OWN ? h * (own_rate(m, link, p->eta) - parent.z)
                                                   : commanded_turn(course, m, b, from, share);

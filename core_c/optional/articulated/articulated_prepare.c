@@ -40,6 +40,18 @@ static void take_columns(laconic_articulated_model *m, const laconic_model *carr
     }
 }
 
+/* Coefficients of aᵀ A b in the six entries of A. */
+static laconic_form pair_of(vector a, vector b) {
+    const laconic_form pair = {a.x * b.x,         a.x * b.y + a.y * b.x, a.y * b.y, a.x * b.z + a.z * b.x,
+                               a.y * b.z + a.z * b.y, a.z * b.z};
+    return pair;
+}
+
+static void take_pairs(laconic_articulated_model *m) {
+    for (int32_t i = 0, k = 0; i < 3; i++)
+        for (int32_t j = 0; j <= i; j++) m->pair[k++] = pair_of(m->column[i], m->column[j]);
+}
+
 static void take_carriage(laconic_articulated_model *m, const laconic_model *carriage) {
     const real spread = carriage->yaw_scale * carriage->wheel_radius_m;
     const laconic_form inertia = {carriage->mass_kg, R(0), carriage->mass_kg,
@@ -50,6 +62,7 @@ static void take_carriage(laconic_articulated_model *m, const laconic_model *car
     m->inertia = inertia;
     m->length_m = spread;
     take_columns(m, carriage);
+    take_pairs(m);
 #if LACONIC_WITH_SLOPE
     if (carriage->sloped)
         m->slope_acceleration = vector_of(carriage->slope_force_N[0] / carriage->mass_kg,

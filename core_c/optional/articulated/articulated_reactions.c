@@ -179,7 +179,7 @@ static void balance_body(laconic_articulated_reactions *out, reaction_moment *r,
     holding_rows rows;
     rows.count = 0;
     real torque = R(0);
-    if (link->motion <= LACONIC_MOTION_OWN) torque = hinge_torque(link, &r->drive, &r->sweep, b);
+    if (link->motion <= LACONIC_MOTION_OWN) torque = hinge_torque(link, &r->drive, r->sweep.rate[b - 1], r->sweep.angle_rad[b - 1], b);
     const vector delivered = wheels_deliver(r, m, b, torque);
     if (link->motion != LACONIC_MOTION_COORDINATED) {
         hold_by_body(&rows, m, b);

@@ -12,7 +12,7 @@
 #if LACONIC_MAX_BODIES > 0
 
 static const real stage_at[4] = {R(0), R(0.5), R(0.5), R(1)};
-static const real stage_weight[4] = {R(1) / R(6), R(1) / R(3), R(1) / R(3), R(1) / R(6)};
+static const real stage_weight[4] = {R(1), R(2), R(2), R(1)}; /* over 6 */
 
 /* What a step collects over its stages. */
 typedef struct stage_sums {
@@ -51,7 +51,7 @@ INLINE direction next_on_circle(stage_sums *sums, int32_t b, int g, direction st
     const direction middle = circle_map(start, early, h * (R(1) / R(12)));
     const direction end = circle_map(middle, late, h * (R(1) / R(12)));
     sums->by.turn_rad[b] =
-        laconic_articulated_angle_of(from_to(start, middle)) + laconic_articulated_angle_of(from_to(middle, end));
+        laconic_articulated_turn_from_to(start, middle) + laconic_articulated_turn_from_to(middle, end);
     return end;
 }
 
@@ -65,10 +65,10 @@ INLINE void turn_hinges(stage_sums *sums, articulated_sweep *s, const laconic_ar
             s->toward[b] = next_on_circle(sums, b, g, start->toward[b], h);
             if (link->stiffness_Nm > R(0))
                 s->angle_rad[b] =
-                    start->angle_rad[b] + laconic_articulated_angle_of(from_to(start->toward[b], s->toward[b]));
+                    start->angle_rad[b] + laconic_articulated_turn_from_to(start->toward[b], s->toward[b]);
             continue;
         }
-        sums->by.turn_rad[b] += stage_weight[g] * h * s->rate[b];
+        sums->by.turn_rad[b] += stage_weight[g] * s->rate[b];
         if (link->motion == LACONIC_MOTION_COORDINATED) continue;
         const real turn = ahead * s->rate[b];
         s->toward[b] = turned_by(start->toward[b], turn);
@@ -83,11 +83,28 @@ INLINE void clear_sums(stage_sums *sums, const laconic_articulated_model *m) {
 }
 
 INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconic_articulated_model *m,
-                      const real *eta_rate, int g, real h) {
+                      const real *eta_rate, int g) {
     const real share = stage_weight[g];
-    for (int32_t i = 0; i < m->dof; i++) sums->by.eta[i] += share * h * eta_rate[i];
+    for (int32_t i = 0; i < m->dof; i++) sums->by.eta[i] += share * eta_rate[i];
     for (int32_t b = 0; b <= m->body_count; b++)
         sums->by.mean[b] = plus(sums->by.mean[b], scaled(share, s->twist[b]));
+}
+
+/* From sums with weights over 6 to what the step adds. */
+INLINE void end_sums(stage_sums *sums, const laconic_articulated_model *m, const real *correction, real h,
+                     bool circle) {
+    const real sixth = R(1) / R(6), step_sixth = h * sixth;
+    for (int32_t i = 0; i < m->dof; i++) sums->by.eta[i] *= step_sixth;
+    for (int32_t i = 0; m->row_count > 0 && i < m->dof; i++) sums->by.eta[i] += correction[i];
+    for (int32_t b = 0; b <= m->body_count; b++) sums->by.mean[b] = scaled(sixth, sums->by.mean[b]);
+    for (int32_t b = 0; b < m->body_count; b++)
+        if (!on_circle(&m->link[b], circle)) sums->by.turn_rad[b] *= step_sixth;
+}
+
+/* Rows left over drift by the error of a step. The first stage of the next one knows how to restore them, and what that
+ * changes in its own rates is of the order of the drift times h, beyond the method's order. */
+INLINE void restore_rows(real *eta, const laconic_articulated_model *m, const real *correction) {
+    for (int32_t i = 0; m->row_count > 0 && i < m->dof; i++) eta[i] += correction[i];
 }
 
 INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_state *state,
@@ -100,6 +117,7 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
                                                                            : direction_with(R(1), R(0));
     direction facing = heading;
     real eta0[LACONIC_MAX_VELOCITIES], eta[LACONIC_MAX_VELOCITIES], rate[LACONIC_MAX_VELOCITIES];
+    real correction[LACONIC_MAX_VELOCITIES];
     take_posture_of(&start, m, state);
     take_eta(eta0, m, state);
     clear_sums(sums, m);
@@ -111,16 +129,20 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     for (int g = 0; g < 4; g++) {
         const articulated_drive *drive = drive_at(&room, course, m, from + share * stage_at[g]);
         const real ahead = h * (g < 3 ? stage_at[g + 1] : R(0));
-        laconic_status status = accelerations(rate, &s, m, eta, drive, facing, why);
+        laconic_status status = accelerations(rate, g == 0 ? correction : NULL, &s, m, eta, drive, facing, why);
         if (status == LACONIC_OK && g == 0) status = check_rates(&s, m, h, circle, largest, why);
         if (status != LACONIC_OK) return status;
-        if (g == 0) sums->by.bend = scaled(R(-1), s.twist[0]);
+        if (g == 0) {
+            sums->by.bend = scaled(R(-1), s.twist[0]);
+            restore_rows(eta0, m, correction);
+        }
         if (drive->rotates) facing = turned_by(heading, ahead * s.twist[0].z);
-        add_stage(sums, &s, m, rate, g, h);
+        add_stage(sums, &s, m, rate, g);
         turn_hinges(sums, &s, m, &start, g, h, ahead, circle);
         for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i] + ahead * rate[i];
     }
     sums->by.bend = plus(sums->by.bend, s.twist[0]);
+    end_sums(sums, m, correction, h, circle);
     return LACONIC_OK;
 }
 
@@ -147,9 +169,8 @@ laconic_status laconic_articulated_rk4(laconic_articulated_state *state, const l
     if (m->coordinated)
         laconic_articulated_turn_coordinated(&sums.by, m, state, drive_at(&room, course, m, from + share));
     status = laconic_articulated_accept(state, m, &sums.by, share * course->step_s);
-    if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_STEP, 0, share * course->step_s, R(0));
-    if (m->row_count == 0) return LACONIC_OK;
-    return laconic_articulated_project(state, m, drive_at(&room, course, m, from + share), why);
+    return status == LACONIC_OK ? status
+                                : refuse(why, status, LACONIC_FIELD_STEP, 0, share * course->step_s, R(0));
 }
 
 #endif

@@ -150,6 +150,27 @@ laconic_status laconic_articulated_keep_rows(int32_t kept[], int32_t *count, con
     return status;
 }
 
+laconic_status laconic_articulated_solve_rates(real *eta_rate, real *correction, const articulated_sweep *s,
+                                               const laconic_articulated_model *m, laconic_refusal *why) {
+    factored f;
+    kept_rows k;
+    real y[LACONIC_MAX_VELOCITIES], target[LACONIC_MAX_LEFT_ROWS];
+    for (int32_t r = 0; r < m->row_count; r++) target[r] = -s->row_bias[r];
+    laconic_status status = factor_and_keep(&f, &k, y, s, m, target, why);
+    if (status != LACONIC_OK) return status;
+    backward(eta_rate, &f, y);
+    if (correction == NULL) return LACONIC_OK;
+    for (int32_t i = 0; i < m->dof; i++) y[i] = R(0);
+    for (int32_t q = 0; q < k.count; q++) {
+        real along = -s->row_value[k.row[q]];
+        for (int32_t p = 0; p < q; p++) along -= k.triangle[q][p] * k.along[p];
+        k.along[q] = along / k.triangle[q][q];
+        add_multiple(&f, y, k.along[q], k.unit[q]);
+    }
+    backward(correction, &f, y);
+    return LACONIC_OK;
+}
+
 laconic_status laconic_articulated_solve(real *x, real *multiplier, const articulated_sweep *s,
                                          const laconic_articulated_model *m, const real *target, laconic_refusal *why) {
     factored f;

@@ -199,7 +199,7 @@ void laconic_articulated_turn_coordinated(articulated_increment *by, const lacon
         real rate, acceleration;
         if (m->link[b - 1].motion != LACONIC_MOTION_COORDINATED) continue;
         (void)laconic_articulated_coordinate(&d, &rate, &acceleration, &m->link[b - 1], end->twist);
-        by->turn_rad[b - 1] = laconic_articulated_angle_of(from_to(direction_of_heading(&state->hinge[b - 1]), d));
+        by->turn_rad[b - 1] = laconic_articulated_turn_from_to(direction_of_heading(&state->hinge[b - 1]), d);
     }
 }
 

@@ -147,19 +147,31 @@ static laconic_status by_method(laconic_articulated_state *state, const laconic_
     }
 }
 
+/* Methods that may refuse after they changed the state, and jumps before a step, work on a copy. */
+RARE laconic_status step_on_copy(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                 const laconic_articulated_integrator *integrator, const articulated_course *course,
+                                 laconic_refusal *why) {
+    laconic_articulated_state after = *state;
+    laconic_status status = follow_jump(&after, m, &course->start, why);
+    if (status == LACONIC_OK) status = by_method(&after, m, integrator, course, why);
+    if (status == LACONIC_OK) *state = after;
+    return status;
+}
+
 laconic_status laconic_articulated_step(const laconic_articulated_model *model,
                                         const laconic_articulated_integrator *integrator,
                                         laconic_articulated_state *state, const laconic_articulated_input *start,
                                         const laconic_articulated_input *end, laconic_refusal *why) {
     articulated_course course;
-    laconic_articulated_state after = *state;
     laconic_status status = take_course(&course, model, integrator, start, end, why);
-    if (status == LACONIC_OK) status = follow_jump(&after, model, &course.start, why);
-    if (status == LACONIC_OK) status = by_method(&after, model, integrator, &course, why);
     if (status != LACONIC_OK) return status;
-    if (!course.constant) laconic_articulated_keep_drive(&after, model, &course.end);
-    *state = after;
-    return LACONIC_OK;
+    const bool projects = integrator->method == LACONIC_ARTICULATED_MOEBIUS_4 && model->row_count > 0;
+    if (projects || commands_jump(state, model, &course.start))
+        status = step_on_copy(state, model, integrator, &course, why);
+    else
+        status = by_method(state, model, integrator, &course, why);
+    if (status == LACONIC_OK && !course.constant) laconic_articulated_keep_drive(state, model, &course.end);
+    return status;
 }
 
 #endif

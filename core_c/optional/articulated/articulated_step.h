@@ -60,6 +60,9 @@ static inline direction from_to(direction from, direction to) {
     return direction_with(from.cosine * to.cosine + from.sine * to.sine, from.cosine * to.sine - from.sine * to.cosine);
 }
 
+/* The angle from one direction of length 1 to another, in (−π, π]. */
+real laconic_articulated_turn_from_to(direction from, direction to);
+
 static inline direction direction_of_heading(const laconic_heading *heading) {
     return laconic_direction_of_binary_angle(heading->fraction);
 }

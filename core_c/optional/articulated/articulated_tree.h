@@ -86,31 +86,48 @@ static inline real own_rate(const laconic_articulated_model *m, const laconic_li
     return eta[m->carriage_dof + link->column];
 }
 
-/* Twist and γ of one child. `acceleration`: ψ'' as far as it is commanded. */
+/* Twist, γ and ψ' of one child. */
+typedef struct child_motion {
+    vector twist, bias;
+    real rate;
+} child_motion;
+
+/* `acceleration`: ψ'' as far as it is commanded. `bias`: γ of the parent; NULL: it is 0. */
+INLINE child_motion motion_of_child(const laconic_link *link, direction d, vector parent, const vector *bias,
+                                    real own_yaw_rate, real commanded_rate, real acceleration) {
+    child_motion c;
+    c.twist = carried(link, d, parent);
+    c.bias = bias != NULL ? carried(link, d, *bias) : none;
+    if (link->motion == LACONIC_MOTION_FOLLOWING)
+        c.twist.z = following_rate(link, c.twist);
+    else if (link->motion == LACONIC_MOTION_OWN)
+        c.twist.z = own_yaw_rate;
+    else
+        c.twist.z += commanded_rate;
+    c.rate = c.twist.z - parent.z;
+    c.bias.x += c.rate * c.twist.y;
+    c.bias.y -= c.rate * c.twist.x;
+    if (link->motion == LACONIC_MOTION_FOLLOWING)
+        c.bias.z = following_rate(link, c.bias);
+    else if (link->motion == LACONIC_MOTION_OWN)
+        c.bias.z = R(0);
+    else
+        c.bias.z += acceleration;
+    return c;
+}
+
+static inline real own_rate_or_0(const laconic_articulated_model *m, const laconic_link *link, const real *eta) {
+    return link->motion == LACONIC_MOTION_OWN ? own_rate(m, link, eta) : R(0);
+}
+
 INLINE void sweep_child(articulated_sweep *s, const laconic_articulated_model *m, int32_t b, const real *eta,
                         real commanded_rate, real acceleration) {
     const laconic_link *link = &m->link[b - 1];
-    const direction d = s->toward[b - 1];
-    vector v = carried(link, d, s->twist[link->parent]), g = carried(link, d, s->bias[link->parent]);
-    const real parent_rate = v.z;
-    if (link->motion == LACONIC_MOTION_FOLLOWING)
-        v.z = following_rate(link, v);
-    else if (link->motion == LACONIC_MOTION_OWN)
-        v.z = own_rate(m, link, eta);
-    else
-        v.z += commanded_rate;
-    const real rate = v.z - parent_rate;
-    g.x += rate * v.y;
-    g.y -= rate * v.x;
-    if (link->motion == LACONIC_MOTION_FOLLOWING)
-        g.z = following_rate(link, g);
-    else if (link->motion == LACONIC_MOTION_OWN)
-        g.z = R(0);
-    else
-        g.z += acceleration;
-    s->twist[b] = v;
-    s->bias[b] = g;
-    s->rate[b - 1] = rate;
+    const child_motion c = motion_of_child(link, s->toward[b - 1], s->twist[link->parent], &s->bias[link->parent],
+                                           own_rate_or_0(m, link, eta), commanded_rate, acceleration);
+    s->twist[b] = c.twist;
+    s->bias[b] = c.bias;
+    s->rate[b - 1] = c.rate;
 }
 
 INLINE void sweep_root(articulated_sweep *s, const laconic_articulated_model *m, const real *eta) {
@@ -152,16 +169,15 @@ static inline vector gyroscopic(vector first_moment, vector v) {
                      -w * (first_moment.x * v.x + first_moment.y * v.y));
 }
 
-static inline real hinge_torque(const laconic_link *link, const articulated_drive *drive, const articulated_sweep *s,
+static inline real hinge_torque(const laconic_link *link, const articulated_drive *drive, real rate, real angle_rad,
                                 int32_t b) {
-    return drive->torque[b - 1] - link->damping_Nms * s->rate[b - 1] - link->stiffness_Nm * s->angle_rad[b - 1];
+    return drive->torque[b - 1] - link->damping_Nms * rate - link->stiffness_Nm * angle_rad;
 }
 
 /* What acts on one body, less I_b γ_b. */
-INLINE vector load_of(const laconic_link *link, const articulated_drive *drive, const articulated_sweep *s, int32_t b) {
-    vector w = minus(plus(gyroscopic(link->first_moment, s->twist[b]), drive->force[b]),
-                     form_times(&link->inertia, s->bias[b]));
-    if (LACONIC_WITH_DAMPING && link->drags) w = minus(w, form_times(&link->drag, s->twist[b]));
+INLINE vector load_of(const laconic_link *link, vector force, vector twist, vector bias) {
+    vector w = minus(plus(gyroscopic(link->first_moment, twist), force), form_times(&link->inertia, bias));
+    if (LACONIC_WITH_DAMPING && link->drags) w = minus(w, form_times(&link->drag, twist));
     return w;
 }
 
@@ -169,17 +185,24 @@ INLINE vector load_of(const laconic_link *link, const articulated_drive *drive, 
 void laconic_articulated_add_world(articulated_sweep *s, const laconic_articulated_model *m,
                                    const articulated_drive *drive, direction heading);
 
-/* Loads of all bodies; those of body 0 without I_0 and D_0, which ζ has as 1 and r, but for a commanded twist. */
+/* Load of body 0 without I_0 and D_0, which ζ has as 1 and r, but for a commanded twist. */
+INLINE vector load_of_carriage(const articulated_sweep *s, const laconic_articulated_model *m, vector force) {
+    const vector v = s->twist[0];
+    const real turning = m->mass_kg * v.z;
+    force.x += turning * v.y;
+    force.y -= turning * v.x;
+    if (!m->coordinated) return force;
+    return minus(force, plus(form_times(&m->inertia, s->bias[0]), form_times(&m->drag, v)));
+}
+
+/* Loads of all bodies. */
 INLINE void sweep_loads(articulated_sweep *s, const laconic_articulated_model *m, const articulated_drive *drive) {
-    const vector still = {R(0), R(0), m->mass_kg};
-    s->force[0] = plus(gyroscopic(still, s->twist[0]), drive->force[0]);
-    if (m->coordinated)
-        s->force[0] = minus(s->force[0], plus(form_times(&m->inertia, s->bias[0]), form_times(&m->drag, s->twist[0])));
+    s->force[0] = load_of_carriage(s, m, drive->force[0]);
     for (int32_t b = 1; b <= m->body_count; b++) {
         const laconic_link *link = &m->link[b - 1];
-        s->force[b] = load_of(link, drive, s, b);
+        s->force[b] = load_of(link, drive->force[b], s->twist[b], s->bias[b]);
         if (link->motion <= LACONIC_MOTION_OWN) {
-            const real torque = hinge_torque(link, drive, s, b);
+            const real torque = hinge_torque(link, drive, s->rate[b - 1], s->angle_rad[b - 1], b);
             s->force[b].z += torque;
             s->force[link->parent].z -= torque;
         }
@@ -203,49 +226,60 @@ INLINE vector pulled(const laconic_link *link, direction d, vector c) {
     return p;
 }
 
-/* Adds T_bᵀ A T_b to the parent's inertia: the part on V turns by 2ψ, b (between V and ω) by ψ. */
-INLINE void pull_inertia(laconic_form *parent, const laconic_link *link, direction d, const laconic_form *a) {
-    real xx = a->xx, xy = a->xy, yy = a->yy;
+/* The part on V of a body's inertia, with ω = −n·V/ℓ where the hinge follows. */
+typedef struct plane_form {
+    real xx, xy, yy;
+} plane_form;
+
+INLINE plane_form plane_part(const laconic_link *link, const laconic_form *a) {
+    plane_form p = {a->xx, a->xy, a->yy};
     if (link->motion == LACONIC_MOTION_FOLLOWING) {
         const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
         const real ux = a->xw - R(0.5) * mx * a->ww, uy = a->yw - R(0.5) * my * a->ww;
-        xx -= R(2) * mx * ux;
-        yy -= R(2) * my * uy;
-        xy -= mx * uy + my * ux;
+        p.xx -= R(2) * mx * ux;
+        p.yy -= R(2) * my * uy;
+        p.xy -= mx * uy + my * ux;
     }
-    const real mean = R(0.5) * (xx + yy), half = R(0.5) * (xx - yy);
+    return p;
+}
+
+/* Adds T_bᵀ A T_b to the parent's inertia: the part on V turns by 2ψ. */
+INLINE void pull_plane(laconic_form *parent, const laconic_link *link, direction d, plane_form a) {
+    const real mean = R(0.5) * (a.xx + a.yy), half = R(0.5) * (a.xx - a.yy);
     const real cosine = d.cosine * d.cosine - d.sine * d.sine, sine = R(2) * d.cosine * d.sine;
-    const real turned_half = cosine * half - sine * xy, turned_xy = sine * half + cosine * xy;
-    const real pxx = mean + turned_half, pyy = mean - turned_half;
-    const real hx = link->hinge.x, hy = link->hinge.y;
-    real bx = hx * turned_xy - hy * pxx, by = hx * pyy - hy * turned_xy;
-    real ww = hx * by - hy * bx;
-    if (link->motion >= LACONIC_MOTION_PRESCRIBED) {
-        const vector w = turned(d, a->xw, a->yw);
-        ww += R(2) * (hx * w.y - hy * w.x) + a->ww;
-        bx += w.x;
-        by += w.y;
-    }
+    const real turned_half = cosine * half - sine * a.xy, turned_xy = sine * half + cosine * a.xy;
+    const real pxx = mean + turned_half, pyy = mean - turned_half, hx = link->hinge.x, hy = link->hinge.y;
+    const real bx = hx * turned_xy - hy * pxx, by = hx * pyy - hy * turned_xy;
     parent->xx += pxx;
     parent->xy += turned_xy;
     parent->yy += pyy;
     parent->xw += bx;
     parent->yw += by;
-    parent->ww += ww;
+    parent->ww += hx * by - hy * bx;
+}
+
+/* The part between V and ω, which turns by ψ, and that on ω, of a body whose ω is commanded against its parent's. */
+INLINE void pull_inertia(laconic_form *parent, const laconic_link *link, direction d, const laconic_form *a) {
+    pull_plane(parent, link, d, plane_part(link, a));
+    if (link->motion < LACONIC_MOTION_PRESCRIBED) return;
+    const vector w = turned(d, a->xw, a->yw);
+    parent->xw += w.x;
+    parent->yw += w.y;
+    parent->ww += R(2) * (link->hinge.x * w.y - link->hinge.y * w.x) + a->ww;
 }
 
 /* Own hinge b: its row of the equations, and its momentum, which travels on. */
-static inline void meet_own(articulated_sweep *s, const laconic_articulated_model *m, int32_t b) {
+static inline void meet_own(articulated_sweep *s, const laconic_articulated_model *m, int32_t b,
+                            const laconic_form *a, real torque) {
     const laconic_link *link = &m->link[b - 1];
     const int32_t k = link->column, i = m->carriage_dof + k;
-    const laconic_form *a = &s->inertia[b];
     for (int32_t j = 0; j < m->own_count; j++) {
         if (j == k || (link->own_below >> j & 1U) == 0U) continue;
         const int32_t other = m->carriage_dof + j;
         s->mass[i > other ? i : other][i > other ? other : i] = s->own[j].z;
     }
     s->mass[i][i] = a->ww;
-    s->push[i] = s->force[b].z;
+    s->push[i] = torque;
     s->own[k] = vector_of(a->xw, a->yw, R(0));
     for (int32_t r = 0; r < m->row_count; r++)
         if (link->rows_below >> r & 1U) s->row_of_own[r][k] = s->row[r].z;
@@ -260,30 +294,37 @@ static inline void pull_others(articulated_sweep *s, const laconic_articulated_m
         if (link->rows_below >> r & 1U) s->row[r] = pulled(link, d, s->row[r]);
 }
 
-/* Makes mass and push entries between own hinges that are not on one path 0, and the rows those of their bodies. */
+/* Makes entries between own hinges that are not on one path 0, and the rows those of their bodies. */
 static inline void begin_inward(articulated_sweep *s, const laconic_articulated_model *m) {
     for (int32_t k = 0; k < m->own_count; k++)
         for (int32_t j = 0; j < k; j++) s->mass[m->carriage_dof + k][m->carriage_dof + j] = R(0);
     for (int32_t r = 0; r < m->row_count; r++) {
-        const laconic_left_row *row = &m->row[r];
-        s->row[r] = row->axle;
-        s->row_bias[r] = dot(row->axle, s->bias[row->body]);
-        s->row_value[r] = dot(row->axle, s->twist[row->body]);
+        s->row[r] = m->row[r].axle;
         for (int32_t k = 0; k < m->own_count; k++) s->row_of_own[r][k] = R(0);
     }
 }
 
-/* Sums forces (and, if wanted, inertias) at the root. */
+/* n·V + ℓω of each row left over, and its derivative at η' = 0. */
+static inline void read_rows(articulated_sweep *s, const laconic_articulated_model *m) {
+    for (int32_t r = 0; r < m->row_count; r++) {
+        const laconic_left_row *row = &m->row[r];
+        s->row_bias[r] = dot(row->axle, s->bias[row->body]);
+        s->row_value[r] = dot(row->axle, s->twist[row->body]);
+    }
+}
+
+/* Sums forces and inertias at the root. */
 INLINE void sweep_inward(articulated_sweep *s, const laconic_articulated_model *m) {
     const laconic_form zero = {R(0), R(0), R(0), R(0), R(0), R(0)};
     const bool simple = m->own_count + m->row_count == 0;
     s->inertia[0] = zero;
     for (int32_t b = 1; b <= m->body_count; b++) s->inertia[b] = m->link[b - 1].inertia;
     if (!simple) begin_inward(s, m);
+    read_rows(s, m);
     for (int32_t b = m->body_count; b >= 1; b--) {
         const laconic_link *link = &m->link[b - 1];
         const direction d = s->toward[b - 1];
-        if (!simple && link->motion == LACONIC_MOTION_OWN) meet_own(s, m, b);
+        if (!simple && link->motion == LACONIC_MOTION_OWN) meet_own(s, m, b, &s->inertia[b], s->force[b].z);
         if (!simple) pull_others(s, m, b);
         pull_inertia(&s->inertia[link->parent], link, d, &s->inertia[b]);
         s->force[link->parent] = plus(s->force[link->parent], pulled(link, d, s->force[b]));
@@ -308,22 +349,45 @@ static inline const vector *carriage_columns(const articulated_sweep *s, const l
 
 /* Push of ζ from the force summed at the root. */
 INLINE void push_root(articulated_sweep *s, const laconic_articulated_model *m, const real *eta, bool damped) {
-    const vector *column = carriage_columns(s, m);
-    for (int32_t i = 0; i < m->carriage_dof; i++) {
-        s->push[i] = dot(column[i], s->force[0]);
-        if (LACONIC_WITH_DAMPING && damped && !m->coordinated) s->push[i] -= m->decay_per_s[i] * eta[i];
+    const vector force = s->force[0];
+    const bool decays = LACONIC_WITH_DAMPING && damped;
+    if (m->coordinated) {
+        s->push[0] = dot(s->along[0], force);
+        return;
+    }
+    s->push[0] = dot(m->column[0], force) - (decays ? m->decay_per_s[0] * eta[0] : R(0));
+    if (m->carriage_dof > 1)
+        s->push[1] = dot(m->column[1], force) - (decays ? m->decay_per_s[1] * eta[1] : R(0));
+    if (m->carriage_dof > 2)
+        s->push[2] = dot(m->column[2], force) - (decays ? m->decay_per_s[2] * eta[2] : R(0));
+}
+
+static inline real form_product(const laconic_form *a, const laconic_form *b) {
+    return (a->xx * b->xx + a->xy * b->xy) + (a->yy * b->yy + a->xw * b->xw) + (a->yw * b->yw + a->ww * b->ww);
+}
+
+/* E₀ + columnᵀ A column */
+INLINE void mass_of_root(articulated_sweep *s, const laconic_articulated_model *m) {
+    const laconic_form *a = &s->inertia[0];
+    if (m->coordinated) {
+        s->mass[0][0] = R(1) + dot(s->along[0], form_times(a, s->along[0]));
+        return;
+    }
+    s->mass[0][0] = R(1) + form_product(&m->pair[0], a);
+    if (m->carriage_dof > 1) {
+        s->mass[1][0] = form_product(&m->pair[1], a);
+        s->mass[1][1] = R(1) + form_product(&m->pair[2], a);
+    }
+    if (m->carriage_dof > 2) {
+        s->mass[2][0] = form_product(&m->pair[3], a);
+        s->mass[2][1] = form_product(&m->pair[4], a);
+        s->mass[2][2] = R(1) + form_product(&m->pair[5], a);
     }
 }
 
-/* Mass and push of ζ from what is summed at the root. */
-INLINE void project_root(articulated_sweep *s, const laconic_articulated_model *m, const real *eta, bool damped) {
+/* What own hinges and rows left over have in ζ. */
+static inline void root_of_others(articulated_sweep *s, const laconic_articulated_model *m) {
     const vector *column = carriage_columns(s, m);
-    for (int32_t i = 0; i < m->carriage_dof; i++) {
-        const vector momentum = form_times(&s->inertia[0], column[i]);
-        for (int32_t j = 0; j < i; j++) s->mass[i][j] = dot(momentum, column[j]);
-        s->mass[i][i] = R(1) + dot(momentum, column[i]);
-    }
-    push_root(s, m, eta, damped);
     for (int32_t k = 0; k < m->own_count; k++)
         for (int32_t i = 0; i < m->carriage_dof; i++) s->mass[m->carriage_dof + k][i] = dot(column[i], s->own[k]);
     for (int32_t r = 0; r < m->row_count; r++) {
@@ -332,27 +396,70 @@ INLINE void project_root(articulated_sweep *s, const laconic_articulated_model *
     }
 }
 
+/* Mass, push and C from what is summed at the root. */
+INLINE void project_root(articulated_sweep *s, const laconic_articulated_model *m, const real *eta, bool damped) {
+    push_root(s, m, eta, damped);
+    mass_of_root(s, m);
+    if (m->own_count + m->row_count > 0) root_of_others(s, m);
+}
+
 /* Solves mass · x = push + Cᵀκ with C x = target for x; refuses MASSLESS_HINGE, WHEELS_DISAGREE. The multipliers are
  * κ, which may be NULL. */
 laconic_status laconic_articulated_solve(real *x, real *multiplier, const articulated_sweep *s,
                                          const laconic_articulated_model *m, const real *target, laconic_refusal *why);
+
+/* η' of a sweep with rows left over or own hinges; `correction` as in accelerations(). */
+laconic_status laconic_articulated_solve_rates(real *eta_rate, real *correction, const articulated_sweep *s,
+                                               const laconic_articulated_model *m, laconic_refusal *why);
 
 /* Numbers of the rows that count, in kept; refuses as laconic_articulated_solve does. */
 laconic_status laconic_articulated_keep_rows(int32_t kept[], int32_t *count, const articulated_sweep *s,
                                              const laconic_articulated_model *m, const real *target,
                                              laconic_refusal *why);
 
-/* x for the usual vehicles: one or two velocities and no row left over. */
+/* Two unknowns with a positive definite matrix. */
+INLINE bool solve_two(real *x, real *y, real a, real b, real c, real f, real g) {
+    const real determinant = a * c - b * b, scale = R(1) / determinant;
+    *x = scale * (c * f - b * g);
+    *y = scale * (a * g - b * f);
+    return determinant > R(1000) * LACONIC_EPSILON * a * c;
+}
+
+/* The usual vehicles: one or two velocities, no row left over. False for others. */
 INLINE bool solve_small(real *x, const articulated_sweep *s, const laconic_articulated_model *m) {
-    if (m->row_count > 0 || m->dof > 2 || m->own_count > 0) return false;
-    if (m->dof == 1) {
-        x[0] = s->push[0] / s->mass[0][0];
-        return true;
+    if (m->row_count > 0 || m->dof > 2) return false;
+    if (m->dof == 2)
+        return solve_two(&x[0], &x[1], s->mass[0][0], s->mass[1][0], s->mass[1][1], s->push[0], s->push[1]);
+    x[0] = s->push[0] / s->mass[0][0]; /* mass of ζ: at least 1 */
+    return true;
+}
+
+/* One steered wheel on a carriage with two velocities: its row c·ζ = 0 leaves ζ = σu with u = (c₂, −c₁), so that σ, and
+ * where the steering is an own hinge its ω, are all that is solved. False for other vehicles. */
+INLINE bool solve_steered(real *x, real *correction, const articulated_sweep *s, const laconic_articulated_model *m) {
+    if (m->row_count != 1 || m->carriage_dof != 2 || m->own_count > 1) return false;
+    const real c0 = s->left[0][0], c1 = s->left[0][1], m00 = s->mass[0][0], m10 = s->mass[1][0], m11 = s->mass[1][1];
+    const real square_size = c0 * c0 + c1 * c1, inverse = R(1) / square_size;
+    const real target = -s->row_bias[0] * inverse, p0 = target * c0, p1 = target * c1;
+    const real f0 = s->push[0] - (m00 * p0 + m10 * p1), f1 = s->push[1] - (m10 * p0 + m11 * p1);
+    const real mass = c1 * c1 * m00 - R(2) * c0 * c1 * m10 + c0 * c0 * m11, push = c1 * f0 - c0 * f1;
+    real sigma = R(0);
+    if (!(square_size > LACONIC_REAL_MIN)) return false;
+    if (m->own_count == 0) {
+        sigma = push / mass;
+    } else {
+        const real o0 = s->mass[2][0], o1 = s->mass[2][1];
+        if (s->row_of_own[0][0] != R(0)) return false;
+        if (!solve_two(&sigma, &x[2], mass, c1 * o0 - c0 * o1, s->mass[2][2], push, s->push[2] - (o0 * p0 + o1 * p1)))
+            return false;
     }
-    /* ζ alone: the determinant is at least 1 */
-    const real scale = R(1) / (s->mass[0][0] * s->mass[1][1] - s->mass[1][0] * s->mass[1][0]);
-    x[0] = scale * (s->mass[1][1] * s->push[0] - s->mass[1][0] * s->push[1]);
-    x[1] = scale * (s->mass[0][0] * s->push[1] - s->mass[1][0] * s->push[0]);
+    x[0] = p0 + sigma * c1;
+    x[1] = p1 - sigma * c0;
+    if (correction == NULL) return true;
+    const real off = -s->row_value[0] * inverse; /* nearest in ζ, of the size of a step's error */
+    correction[0] = off * c0;
+    correction[1] = off * c1;
+    if (m->own_count > 0) correction[2] = R(0);
     return true;
 }
 
@@ -360,20 +467,125 @@ INLINE bool solve_small(real *x, const articulated_sweep *s, const laconic_artic
 laconic_status laconic_articulated_refuse_twist(int32_t hinge, const laconic_articulated_model *m,
                                                 const articulated_drive *drive, laconic_refusal *why);
 
-/* η' and all twists of a posture whose directions are set. */
-INLINE laconic_status accelerations(real *eta_rate, articulated_sweep *s, const laconic_articulated_model *m,
-                                    const real *eta, const articulated_drive *drive, direction heading,
-                                    laconic_refusal *why) {
-    const int32_t unknown = sweep_outward(s, m, eta, drive);
-    real target[LACONIC_MAX_LEFT_ROWS];
+/* A body at whose hinge nothing else hangs: its forces and inertia count at the parent at once, from registers. A
+ * following one has constants for V alone: I and D with ω = −n·V/ℓ put in. */
+INLINE void visit_follower(articulated_sweep *s, const laconic_link *link, const articulated_drive *drive, int32_t b,
+                           direction d, const child_motion *c) {
+    const vector v = c->twist, g = c->bias, force = drive->force[b], a = gyroscopic(link->first_moment, v);
+    const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
+    const real torque = hinge_torque(link, drive, c->rate, s->angle_rad[b - 1], b);
+    const real moment = a.z + force.z + torque;
+    const laconic_form *in = &link->followed_inertia, *drag = &link->followed_drag;
+    real x = a.x + force.x - mx * moment - (in->xx * g.x + in->xy * g.y);
+    real y = a.y + force.y - my * moment - (in->xy * g.x + in->yy * g.y);
+    if (LACONIC_WITH_DAMPING && link->drags) {
+        x -= drag->xx * v.x + drag->xy * v.y;
+        y -= drag->xy * v.x + drag->yy * v.y;
+    }
+    const vector pull = turned(d, x, y);
+    vector *parent = &s->force[link->parent];
+    parent->x += pull.x;
+    parent->y += pull.y;
+    parent->z += link->hinge.x * pull.y - link->hinge.y * pull.x - torque;
+    const plane_form plane = {in->xx, in->xy, in->yy};
+    pull_plane(&s->inertia[link->parent], link, d, plane);
+}
+
+INLINE void visit_other_leaf(articulated_sweep *s, const laconic_articulated_model *m, const articulated_drive *drive,
+                             int32_t b, direction d, const child_motion *c) {
+    const laconic_link *link = &m->link[b - 1];
+    vector w = load_of(link, drive->force[b], c->twist, c->bias);
+    if (link->motion == LACONIC_MOTION_OWN) {
+        const real torque = hinge_torque(link, drive, c->rate, s->angle_rad[b - 1], b);
+        w.z += torque;
+        s->force[link->parent].z -= torque;
+        meet_own(s, m, b, &link->inertia, w.z);
+    }
+    if (m->own_count + m->row_count > 0) pull_others(s, m, b);
+    pull_inertia(&s->inertia[link->parent], link, d, &link->inertia);
+    s->force[link->parent] = plus(s->force[link->parent], pulled(link, d, w));
+}
+
+/* A body on which others hang waits for them with its load and inertia. */
+INLINE void visit_inner(articulated_sweep *s, const laconic_link *link, const articulated_drive *drive, int32_t b,
+                        const child_motion *c) {
+    s->bias[b] = c->bias;
+    s->force[b] = load_of(link, drive->force[b], c->twist, c->bias);
+    s->inertia[b] = link->inertia;
+    if (link->motion > LACONIC_MOTION_OWN) return;
+    const real torque = hinge_torque(link, drive, c->rate, s->angle_rad[b - 1], b);
+    s->force[b].z += torque;
+    s->force[link->parent].z -= torque;
+}
+
+/* One body, from its parent outward. Returns false for a coordinated hinge that gets no direction. */
+INLINE bool visit(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
+                  const articulated_drive *drive, int32_t b) {
+    const laconic_link *link = &m->link[b - 1];
+    const bool still = link->parent == 0 && !m->coordinated;
+    real rate = drive->rate[b - 1], acceleration = drive->acceleration[b - 1];
+    if (link->motion == LACONIC_MOTION_COORDINATED &&
+        !laconic_articulated_coordinate(&s->toward[b - 1], &rate, &acceleration, link, drive->twist))
+        return false;
+    const direction d = s->toward[b - 1];
+    const child_motion c =
+        motion_of_child(link, d, s->twist[link->parent], still ? NULL : &s->bias[link->parent],
+                        own_rate_or_0(m, link, eta), rate, acceleration);
+    s->twist[b] = c.twist;
+    s->rate[b - 1] = c.rate;
+    if (link->rows_below != 0U) s->bias[b] = c.bias;
+    if (!link->is_leaf)
+        visit_inner(s, link, drive, b, &c);
+    else if (link->motion == LACONIC_MOTION_FOLLOWING && link->rows_below == 0U)
+        visit_follower(s, link, drive, b, d, &c);
+    else
+        visit_other_leaf(s, m, drive, b, d, &c);
+    return true;
+}
+
+/* Inner bodies, to the root. */
+INLINE void gather(articulated_sweep *s, const laconic_articulated_model *m) {
+    for (int32_t b = m->last_inner; b >= 1; b--) {
+        const laconic_link *link = &m->link[b - 1];
+        if (link->is_leaf) continue;
+        if (link->motion == LACONIC_MOTION_OWN) meet_own(s, m, b, &s->inertia[b], s->force[b].z);
+        if (m->own_count + m->row_count > 0) pull_others(s, m, b);
+        pull_inertia(&s->inertia[link->parent], link, s->toward[b - 1], &s->inertia[b]);
+        s->force[link->parent] = plus(s->force[link->parent], pulled(link, s->toward[b - 1], s->force[b]));
+    }
+}
+
+/* The same with forces that are fixed in the world: loads change after all twists are known. */
+int32_t laconic_articulated_sweep_rotating(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
+                                           const articulated_drive *drive, direction heading);
+
+/* Twists, forces and inertias of a posture, summed at the root. Returns as sweep_outward does. */
+INLINE int32_t sweep_all(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
+                         const articulated_drive *drive, direction heading) {
+    const laconic_form zero = {R(0), R(0), R(0), R(0), R(0), R(0)};
+    if (drive->rotates) return laconic_articulated_sweep_rotating(s, m, eta, drive, heading);
+    if (m->coordinated && !laconic_articulated_unit_twist(&s->along[0], &s->along_rate, m, drive)) return -1;
+    sweep_root(s, m, eta);
+    s->force[0] = load_of_carriage(s, m, drive->force[0]);
+    s->inertia[0] = zero;
+    if (m->own_count + m->row_count > 0) begin_inward(s, m);
+    for (int32_t b = 1; b <= m->body_count; b++)
+        if (!visit(s, m, eta, drive, b)) return b;
+    read_rows(s, m);
+    gather(s, m);
+    return 0;
+}
+
+/* η' and all twists of a posture whose directions are set. `correction` (NULL: not wanted) is the change of η that
+ * restores the rows left over. */
+INLINE laconic_status accelerations(real *eta_rate, real *correction, articulated_sweep *s,
+                                    const laconic_articulated_model *m, const real *eta,
+                                    const articulated_drive *drive, direction heading, laconic_refusal *why) {
+    const int32_t unknown = sweep_all(s, m, eta, drive, heading);
     if (unknown != 0) return laconic_articulated_refuse_twist(unknown, m, drive, why);
-    sweep_loads(s, m, drive);
-    if (drive->rotates) laconic_articulated_add_world(s, m, drive, heading);
-    sweep_inward(s, m);
     project_root(s, m, eta, true);
-    if (solve_small(eta_rate, s, m)) return LACONIC_OK;
-    for (int32_t r = 0; r < m->row_count; r++) target[r] = -s->row_bias[r];
-    return laconic_articulated_solve(eta_rate, NULL, s, m, target, why);
+    if (solve_small(eta_rate, s, m) || solve_steered(eta_rate, correction, s, m)) return LACONIC_OK;
+    return laconic_articulated_solve_rates(eta_rate, correction, s, m, why);
 }
 
 #endif

@@ -37,4 +37,14 @@ void laconic_articulated_add_world(articulated_sweep *s, const laconic_articulat
     }
 }
 
+int32_t laconic_articulated_sweep_rotating(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
+                                           const articulated_drive *drive, direction heading) {
+    const int32_t unknown = sweep_outward(s, m, eta, drive);
+    if (unknown != 0) return unknown;
+    sweep_loads(s, m, drive);
+    laconic_articulated_add_world(s, m, drive, heading);
+    sweep_inward(s, m);
+    return 0;
+}
+
 #endif

@@ -173,11 +173,12 @@ static void run(void) {
     bool varies = false;
     for (int b = 0; b < model.body_count; b++) varies = varies || now.rate[b].count > 1;
     for (int k = 0; k < 3; k++) varies = varies || now.twist[k].count > 1;
-    laconic_articulated_input start = input_at(0);
+    laconic_articulated_input ends[2];
+    ends[0] = ends[1] = input_at(0);
     for (long i = 0; i < steps; i++) {
-        const laconic_articulated_input end = varies ? input_at(duration * (double)(i + 1) / (double)steps) : start;
-        check(laconic_articulated_step(&model, &integrator, &state, &start, varies ? &end : &start, &why));
-        start = end;
+        const laconic_articulated_input *start = &ends[varies ? i % 2 : 0], *end = &ends[varies ? (i + 1) % 2 : 0];
+        if (varies) ends[(i + 1) % 2] = input_at(duration * (double)(i + 1) / (double)steps);
+        check(laconic_articulated_step(&model, &integrator, &state, start, end, &why));
     }
     time_s += duration;
 }
