@@ -185,6 +185,8 @@ typedef struct laconic_articulated_model {
     laconic_form pair[6];         /* column_iᵀ A column_j = pair · A, for (0,0) (1,0) (1,1) (2,0) (2,1) (2,2) */
     laconic_real decay_per_s[3];  /* r_k of the carriage alone                                               */
     int32_t column_count;         /* of the carriage alone                                                   */
+    laconic_vector held[2];       /* rows with row·X_0 = 0 on all motions that its own wheels allow          */
+    int32_t held_count;
     laconic_real mass_kg;         /* of body 0 with payload                                                  */
     laconic_form inertia, drag;   /* of body 0, about S_0                                                    */
     laconic_real com_x_m, com_y_m;

@@ -5,6 +5,8 @@
 
 #if LACONIC_MAX_BODIES > 0
 
+static bool is_not_0(vector v) { return v.x != R(0) || v.y != R(0) || v.z != R(0); }
+
 /* NaN counts as acting. */
 static bool acts_on(real x, real y) { return !(x == R(0) && y == R(0)); }
 
@@ -40,6 +42,7 @@ void laconic_articulated_drive_of(articulated_drive *drive, const laconic_articu
     drive->twist[0] = m->coordinated ? twist_at_com(m, input->twist) : none;
     drive->twist[1] = m->coordinated ? twist_at_com(m, input->twist_rate) : none;
     drive->twist[2] = none;
+    drive->turns = m->coordinated && is_not_0(drive->twist[1]);
     for (int k = 0; k < 2; k++) {
         drive->world_force[k] = in->world_force_N[k];
         drive->world_force_point[k] = in->world_force_point_m[k];
@@ -55,59 +58,110 @@ void laconic_articulated_drive_kept(articulated_drive *drive, const laconic_arti
     for (int32_t b = 0; b < m->body_count; b++) drive->rate[b] = state->hinge_rate_rad_per_s[b];
     drive->twist[0] = state->twist;
     drive->twist[1] = state->twist_rate;
+    drive->turns = is_not_0(state->twist_rate);
 }
 
 /* --------------------------------------------------------------------------- between both ends -- */
 
+static articulated_cubic cubic_of(real p0, real p1, real d0, real d1, real h) {
+    const real change = p1 - p0, a0 = h * d0, a1 = h * d1;
+    const articulated_cubic c = {p0, a0, R(3) * change - R(2) * a0 - a1, a0 + a1 - R(2) * change};
+    return c;
+}
+
+static bool forces_differ(const articulated_course *c, const laconic_articulated_model *m) {
+    const articulated_drive *a = &c->start, *b = &c->end;
+    real sum = magnitude(a->world_force[0] - b->world_force[0]) + magnitude(a->world_force[1] - b->world_force[1]) +
+               magnitude(a->world_force_point[0] - b->world_force_point[0]) +
+               magnitude(a->world_force_point[1] - b->world_force_point[1]) + size(minus(a->force[0], b->force[0]));
+    for (int32_t k = 0; k < m->body_count; k++)
+        sum += size(minus(a->force[k + 1], b->force[k + 1])) + magnitude(a->torque[k] - b->torque[k]);
+    return sum > R(0);
+}
+
+void laconic_articulated_course_of(articulated_course *course, const laconic_articulated_model *m) {
+    const articulated_drive *a = &course->start, *b = &course->end;
+    const real h = course->step_s;
+    course->forces_vary = forces_differ(course, m);
+    for (int32_t k = 0; k < m->body_count; k++)
+        if (m->link[k].motion == LACONIC_MOTION_PRESCRIBED)
+            course->rate[k] = cubic_of(a->rate[k], b->rate[k], a->acceleration[k], b->acceleration[k], h);
+    course->turns = false;
+    if (!m->coordinated) return;
+    course->twist[0] = cubic_of(a->twist[0].x, b->twist[0].x, a->twist[1].x, b->twist[1].x, h);
+    course->twist[1] = cubic_of(a->twist[0].y, b->twist[0].y, a->twist[1].y, b->twist[1].y, h);
+    course->twist[2] = cubic_of(a->twist[0].z, b->twist[0].z, a->twist[1].z, b->twist[1].z, h);
+    course->turns = is_not_0(minus(a->twist[0], b->twist[0])) || is_not_0(a->twist[1]) || is_not_0(b->twist[1]);
+}
+
 static real between(real a, real b, real at) { return a + at * (b - a); }
 
-static vector between_vectors(vector a, vector b, real at) { return plus(a, scaled(at, minus(b, a))); }
-
-/* p, p' and p'' of the cubic. */
-typedef struct cubic {
-    real value, rate, curve;
-} cubic;
-
-static cubic cubic_at(real p0, real p1, real d0, real d1, const articulated_course *c, real s) {
-    const real change = p1 - p0, a0 = c->step_s * d0, a1 = c->step_s * d1;
-    const real c2 = R(3) * change - R(2) * a0 - a1, c3 = a0 + a1 - R(2) * change;
-    cubic p;
-    p.value = p0 + s * (a0 + s * (c2 + s * c3));
-    p.rate = c->rate_per_step * (a0 + s * (R(2) * c2 + R(3) * s * c3));
-    p.curve = c->rate_per_step * c->rate_per_step * (R(2) * c2 + R(6) * s * c3);
-    return p;
-}
-
-static void twist_between(articulated_drive *drive, const articulated_course *c, real at) {
-    const vector *a = c->start.twist, *b = c->end.twist;
-    const cubic x = cubic_at(a[0].x, b[0].x, a[1].x, b[1].x, c, at);
-    const cubic y = cubic_at(a[0].y, b[0].y, a[1].y, b[1].y, c, at);
-    const cubic z = cubic_at(a[0].z, b[0].z, a[1].z, b[1].z, c, at);
-    drive->twist[0] = vector_of(x.value, y.value, z.value);
-    drive->twist[1] = vector_of(x.rate, y.rate, z.rate);
-    drive->twist[2] = vector_of(x.curve, y.curve, z.curve);
-}
-
-void laconic_articulated_drive_at(articulated_drive *drive, const articulated_course *course,
-                                  const laconic_articulated_model *m, real at) {
+static void forces_at(articulated_drive *drive, const articulated_course *course, const laconic_articulated_model *m,
+                      real at) {
     const articulated_drive *a = &course->start, *b = &course->end;
-    for (int32_t k = 0; k <= m->body_count; k++) drive->force[k] = between_vectors(a->force[k], b->force[k], at);
-    for (int32_t k = 0; k < m->body_count; k++) {
-        drive->torque[k] = between(a->torque[k], b->torque[k], at);
-        if (m->link[k].motion != LACONIC_MOTION_PRESCRIBED) {
-            drive->rate[k] = drive->acceleration[k] = R(0);
-            continue;
-        }
-        const cubic r = cubic_at(a->rate[k], b->rate[k], a->acceleration[k], b->acceleration[k], course, at);
-        drive->rate[k] = r.value;
-        drive->acceleration[k] = r.rate;
-    }
-    if (m->coordinated) twist_between(drive, course, at);
+    for (int32_t k = 0; k <= m->body_count; k++)
+        drive->force[k] = plus(a->force[k], scaled(at, minus(b->force[k], a->force[k])));
+    for (int32_t k = 0; k < m->body_count; k++) drive->torque[k] = between(a->torque[k], b->torque[k], at);
     for (int k = 0; k < 2; k++) {
         drive->world_force[k] = between(a->world_force[k], b->world_force[k], at);
         drive->world_force_point[k] = between(a->world_force_point[k], b->world_force_point[k], at);
     }
     drive->rotates = a->rotates || b->rotates;
+}
+
+static real cubic_value(const articulated_cubic *c, real s) {
+    return c->start + s * (c->slope + s * (c->square + s * c->cube));
+}
+
+static real cubic_rate(const articulated_cubic *c, real s, real per_step) {
+    return per_step * (c->slope + s * (R(2) * c->square + R(3) * s * c->cube));
+}
+
+static real cubic_curve(const articulated_cubic *c, real s, real per_step) {
+    return per_step * per_step * (R(2) * c->square + R(6) * s * c->cube);
+}
+
+static void twist_at(articulated_drive *drive, const articulated_course *course, real s) {
+    const articulated_cubic *x = &course->twist[0], *y = &course->twist[1], *z = &course->twist[2];
+    const real n = course->rate_per_step;
+    drive->twist[0] = vector_of(cubic_value(x, s), cubic_value(y, s), cubic_value(z, s));
+    drive->twist[1] = vector_of(cubic_rate(x, s, n), cubic_rate(y, s, n), cubic_rate(z, s, n));
+    drive->twist[2] = vector_of(cubic_curve(x, s, n), cubic_curve(y, s, n), cubic_curve(z, s, n));
+}
+
+static void commands_at(articulated_drive *drive, const articulated_course *course, const laconic_articulated_model *m,
+                        real at) {
+    for (int32_t k = 0; k < m->body_count; k++) {
+        drive->rate[k] = drive->acceleration[k] = R(0);
+        if (m->link[k].motion != LACONIC_MOTION_PRESCRIBED) continue;
+        drive->rate[k] = cubic_value(&course->rate[k], at);
+        drive->acceleration[k] = cubic_rate(&course->rate[k], at, course->rate_per_step);
+    }
+    drive->turns = course->turns;
+    if (course->turns) twist_at(drive, course, at);
+}
+
+void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course,
+                                      const laconic_articulated_model *m) {
+    moment->at = R(-1);
+    if (course->constant) return;
+    forces_at(&moment->drive, course, m, R(0));
+    for (int k = 0; k < 3; k++) moment->drive.twist[k] = course->start.twist[k];
+}
+
+void laconic_articulated_move_moment(articulated_moment *moment, const articulated_course *course,
+                                     const laconic_articulated_model *m, real at) {
+    moment->at = at;
+    if (course->forces_vary) forces_at(&moment->drive, course, m, at);
+    commands_at(&moment->drive, course, m, at);
+}
+
+/* Over cubics Simpson's rule is exact. */
+real laconic_articulated_commanded_turn(const articulated_course *course, int32_t b, real from, real share) {
+    const articulated_cubic *c = &course->rate[b - 1];
+    if (course->constant) return share * course->step_s * course->start.rate[b - 1];
+    const real sum = cubic_value(c, from) + R(4) * cubic_value(c, from + R(0.5) * share) + cubic_value(c, from + share);
+    return share * course->step_s * sum * (R(1) / R(6));
 }
 
 /* ----------------------------------------------------------------------------------- checks -- */
@@ -120,50 +174,6 @@ bool laconic_articulated_drive_is_finite(const articulated_drive *drive, const l
         zero += zero_if_finite(size(drive->force[b + 1]) + magnitude(drive->torque[b]) + magnitude(drive->rate[b]) +
                                magnitude(drive->acceleration[b]));
     return zero == R(0);
-}
-
-/* What of a twist is not a motion of the carriage. */
-static real against_wheels(const laconic_articulated_model *m, vector twist) {
-    const vector momentum = form_times(&m->inertia, twist);
-    vector rest = twist;
-    for (int32_t k = 0; k < m->column_count; k++)
-        rest = minus(rest, scaled(dot(m->column[k], momentum), m->column[k]));
-    return magnitude(rest.x) + magnitude(rest.y) + m->length_m * magnitude(rest.z);
-}
-
-static laconic_status check_against_wheels(const laconic_articulated_model *m, const articulated_drive *drive,
-                                           laconic_refusal *why) {
-    for (int k = 0; k < 2 && m->column_count < 3; k++) {
-        const vector t = drive->twist[k];
-        const real whole = magnitude(t.x) + magnitude(t.y) + m->length_m * magnitude(t.z);
-        const real off = against_wheels(m, t);
-        if (off > R(10) * LACONIC_RANK_TOLERANCE * whole)
-            return refuse(why, LACONIC_TWIST_AGAINST_WHEELS,
-                          (laconic_field)(k == 0 ? LACONIC_FIELD_OF_TWIST : LACONIC_FIELD_OF_TWIST_RATE), 0,
-                          off / whole, R(0));
-    }
-    return LACONIC_OK;
-}
-
-laconic_status laconic_articulated_check_twist(const laconic_articulated_model *m, const articulated_drive *from,
-                                               const articulated_drive *to, real largest_turn_rad,
-                                               laconic_refusal *why) {
-    laconic_status status = check_against_wheels(m, to, why);
-    for (int32_t b = 1; status == LACONIC_OK && b <= m->body_count; b++) {
-        const laconic_link *link = &m->link[b - 1];
-        direction d, e;
-        real rate, acceleration;
-        if (link->motion != LACONIC_MOTION_COORDINATED) continue;
-        if (!laconic_articulated_coordinate(&d, &rate, &acceleration, link, from->twist))
-            return laconic_articulated_refuse_twist(b, m, from, why);
-        if (!laconic_articulated_coordinate(&e, &rate, &acceleration, link, to->twist))
-            return laconic_articulated_refuse_twist(b, m, to, why);
-        const real turn = laconic_articulated_angle_of(from_to(d, e));
-        if (magnitude(turn) > largest_turn_rad)
-            return refuse(why, LACONIC_TWIST_JUMPS, (laconic_field)LACONIC_FIELD_OF_BODY_HINGE, b, turn,
-                          largest_turn_rad);
-    }
-    return status;
 }
 
 #endif

@@ -16,6 +16,7 @@ static void take_posture(articulated_sweep *s, articulated_drive *drive, const l
                          int32_t posture) {
     const articulated_drive still = ALL_ZERO;
     *drive = still;
+    forget_sizes(s, m);
     for (int32_t b = 1; b <= m->body_count; b++)
         s->toward[b - 1] = laconic_direction_of_angle(posture == 0 ? R(0) : R(2.399963) * (real)(posture + 7 * b));
     for (int32_t k = 0; k < m->column_count; k++) {

@@ -35,16 +35,6 @@ typedef struct moebius_means {
 
 /* ------------------------------------------------------------------------------------ angles -- */
 
-/* ∫ of a prescribed rate between two shares of the step: Simpson's rule is exact for cubics. */
-static real commanded_turn(const articulated_course *course, const laconic_articulated_model *m, int32_t b, real from,
-                           real share) {
-    articulated_drive room[3];
-    real sum = R(0);
-    for (int k = 0; k < 3; k++)
-        sum += (k == 1 ? R(4) : R(1)) * drive_at(&room[k], course, m, from + R(0.5) * R(k) * share)->rate[b - 1];
-    return course->step_s * share * sum * (R(1) / R(6));
-}
-
 /* Moves one hinge for h, from the share `from`; the twist of its parent is in s. */
 static void move_hinge(moebius_point *p, const articulated_sweep *s, const laconic_articulated_model *m,
                        const articulated_course *course, int32_t b, real from, real share) {
@@ -59,7 +49,7 @@ static void move_hinge(moebius_point *p, const articulated_sweep *s, const lacon
         turn = laconic_articulated_turn_from_to(before, p->toward[b - 1]);
     } else {
         turn = link->motion == LACONIC_MOTION_OWN ? h * (own_rate(m, link, p->eta) - parent.z)
-                                                  : commanded_turn(course, m, b, from, share);
+                                                  : laconic_articulated_commanded_turn(course, b, from, share);
         p->toward[b - 1] = turned_by(before, turn);
     }
     p->turn_rad[b - 1] += turn;
@@ -70,8 +60,11 @@ static void child_twist(articulated_sweep *s, const laconic_articulated_model *m
                         const real *eta, int32_t b) {
     const laconic_link *link = &m->link[b - 1];
     real rate = drive->rate[b - 1], acceleration = drive->acceleration[b - 1];
-    if (link->motion == LACONIC_MOTION_COORDINATED)
-        (void)laconic_articulated_coordinate(&s->toward[b - 1], &rate, &acceleration, link, drive->twist);
+    if (link->motion == LACONIC_MOTION_COORDINATED) {
+        const coordinated_motion c = coordinate(s, link, drive, b);
+        rate = c.rate;
+        acceleration = c.acceleration;
+    }
     sweep_child(s, m, b, eta, rate, acceleration);
 }
 
@@ -215,17 +208,17 @@ static laconic_status velocity_step(real *d, articulated_sweep *s, const laconic
 
 /* --------------------------------------------------------------------------------- base step -- */
 
-static laconic_status commanded_ready(articulated_sweep *s, const laconic_articulated_model *m,
+static laconic_status commanded_ready(articulated_sweep *s, const laconic_articulated_model *m, const moebius_point *p,
                                       const articulated_drive *drive, laconic_refusal *why) {
-    direction d;
-    real rate, acceleration;
+    forget_sizes(s, m);
     if (!m->coordinated) return LACONIC_OK;
-    if (!laconic_articulated_unit_twist(&s->along[0], &s->along_rate, m, drive))
-        return laconic_articulated_refuse_twist(-1, m, drive, why);
-    for (int32_t b = 1; b <= m->body_count; b++)
+    if (!take_unit_twist(s, m, drive)) return laconic_articulated_refuse_twist(-1, m, drive, why);
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        s->toward[b - 1] = p->toward[b - 1];
         if (m->link[b - 1].motion == LACONIC_MOTION_COORDINATED &&
-            !laconic_articulated_coordinate(&d, &rate, &acceleration, &m->link[b - 1], drive->twist))
+            !(coordinate(s, &m->link[b - 1], drive, b).size > R(0)))
             return laconic_articulated_refuse_twist(b, m, drive, why);
+    }
     return LACONIC_OK;
 }
 
@@ -250,11 +243,12 @@ static laconic_status base_step_of(moebius_point *p, moebius_means *means, const
                                    const laconic_articulated_factors *factors, const articulated_course *course,
                                    real from, real share, laconic_refusal *why) {
     articulated_sweep s;
-    articulated_drive room;
+    articulated_moment moment;
     const real half = R(0.5) * share;
-    const articulated_drive *drive = drive_at(&room, course, m, from + half);
+    laconic_articulated_begin_moment(&moment, course, m);
+    const articulated_drive *drive = drive_at(&moment, course, m, from + half);
     real d[LACONIC_MAX_VELOCITIES], before[LACONIC_MAX_VELOCITIES];
-    laconic_status status = commanded_ready(&s, m, drive, why);
+    laconic_status status = commanded_ready(&s, m, p, drive, why);
     if (status != LACONIC_OK) return status;
     move_outward(p, &s, m, course, drive, from, half);
     status = velocity_step(d, &s, m, factors, drive, p, share * course->step_s, why);
@@ -306,7 +300,7 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
     moebius_point once, twice;
     moebius_means means[3];
     articulated_increment by;
-    articulated_drive room;
+    articulated_moment moment;
     const real h = share * course->step_s, half = R(0.5) * share;
     start_point(&once, m, state);
     twice = once;
@@ -315,10 +309,12 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
     if (status == LACONIC_OK) status = base_step_of(&twice, &means[2], m, &factors[1], course, from + half, half, why);
     if (status != LACONIC_OK) return status;
     combine_points(&by, m, state, &once, &twice, means);
-    laconic_articulated_turn_coordinated(&by, m, state, drive_at(&room, course, m, from + share));
+    laconic_articulated_begin_moment(&moment, course, m);
+    const articulated_drive *end = drive_at(&moment, course, m, from + share);
+    laconic_articulated_turn_coordinated(&by, m, state, end);
     status = laconic_articulated_accept(state, m, &by, h);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_STEP, 0, h, R(0));
-    return laconic_articulated_project(state, m, drive_at(&room, course, m, from + share), why);
+    return laconic_articulated_project(state, m, end, why);
 }
 
 #endif

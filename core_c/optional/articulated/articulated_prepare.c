@@ -52,6 +52,17 @@ static void take_pairs(laconic_articulated_model *m) {
         for (int32_t j = 0; j <= i; j++) m->pair[k++] = pair_of(m->column[i], m->column[j]);
 }
 
+/* Rows with row·X_0 = 0 for every motion that the carriage's own wheels allow. */
+static void take_held(laconic_articulated_model *m) {
+    const vector a = m->column[0];
+    m->held_count = 3 - m->column_count;
+    if (m->column_count == 2) m->held[0] = cross(a, m->column[1]);
+    if (m->column_count != 1) return;
+    const bool along_x = magnitude(a.x) > magnitude(a.y) && magnitude(a.x) > magnitude(a.z);
+    m->held[0] = cross(a, along_x ? vector_of(R(0), R(1), R(0)) : vector_of(R(1), R(0), R(0)));
+    m->held[1] = cross(a, m->held[0]);
+}
+
 static void take_carriage(laconic_articulated_model *m, const laconic_model *carriage) {
     const real spread = carriage->yaw_scale * carriage->wheel_radius_m;
     const laconic_form inertia = {carriage->mass_kg, R(0), carriage->mass_kg,
@@ -63,6 +74,7 @@ static void take_carriage(laconic_articulated_model *m, const laconic_model *car
     m->length_m = spread;
     take_columns(m, carriage);
     take_pairs(m);
+    take_held(m);
 #if LACONIC_WITH_SLOPE
     if (carriage->sloped)
         m->slope_acceleration = vector_of(carriage->slope_force_N[0] / carriage->mass_kg,

@@ -90,15 +90,19 @@ INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconi
         sums->by.mean[b] = plus(sums->by.mean[b], scaled(share, s->twist[b]));
 }
 
-/* From sums with weights over 6 to what the step adds. */
-INLINE void end_sums(stage_sums *sums, const laconic_articulated_model *m, const real *correction, real h,
-                     bool circle) {
+/* From sums with weights over 6 to what the step adds. Coordinated hinges are where the last stage has them. */
+INLINE void end_sums(stage_sums *sums, const laconic_articulated_model *m, const articulated_sweep *start,
+                     const articulated_sweep *s, const real *correction, real h, bool circle) {
     const real sixth = R(1) / R(6), step_sixth = h * sixth;
     for (int32_t i = 0; i < m->dof; i++) sums->by.eta[i] *= step_sixth;
     for (int32_t i = 0; m->row_count > 0 && i < m->dof; i++) sums->by.eta[i] += correction[i];
     for (int32_t b = 0; b <= m->body_count; b++) sums->by.mean[b] = scaled(sixth, sums->by.mean[b]);
-    for (int32_t b = 0; b < m->body_count; b++)
-        if (!on_circle(&m->link[b], circle)) sums->by.turn_rad[b] *= step_sixth;
+    for (int32_t b = 0; b < m->body_count; b++) {
+        if (m->link[b].motion == LACONIC_MOTION_COORDINATED)
+            sums->by.turn_rad[b] = laconic_articulated_turn_from_to(start->toward[b], s->toward[b]);
+        else if (!on_circle(&m->link[b], circle))
+            sums->by.turn_rad[b] *= step_sixth;
+    }
 }
 
 /* Rows left over drift by the error of a step. The first stage of the next one knows how to restore them, and what that
@@ -111,7 +115,7 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
                                   const laconic_articulated_model *m, const articulated_course *course, real from,
                                   real share, bool circle, real largest, laconic_refusal *why) {
     articulated_sweep s, start;
-    articulated_drive room;
+    articulated_moment moment;
     const real h = share * course->step_s;
     const direction heading = course->start.rotates || course->end.rotates ? direction_of_heading(&state->heading)
                                                                            : direction_with(R(1), R(0));
@@ -121,13 +125,15 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     take_posture_of(&start, m, state);
     take_eta(eta0, m, state);
     clear_sums(sums, m);
+    laconic_articulated_begin_moment(&moment, course, m);
+    forget_sizes(&s, m);
     for (int32_t b = 0; b < m->body_count; b++) {
         s.toward[b] = start.toward[b];
         s.angle_rad[b] = start.angle_rad[b];
     }
     for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i];
     for (int g = 0; g < 4; g++) {
-        const articulated_drive *drive = drive_at(&room, course, m, from + share * stage_at[g]);
+        const articulated_drive *drive = drive_at(&moment, course, m, from + share * stage_at[g]);
         const real ahead = h * (g < 3 ? stage_at[g + 1] : R(0));
         laconic_status status = accelerations(rate, g == 0 ? correction : NULL, &s, m, eta, drive, facing, why);
         if (status == LACONIC_OK && g == 0) status = check_rates(&s, m, h, circle, largest, why);
@@ -142,7 +148,7 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
         for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i] + ahead * rate[i];
     }
     sums->by.bend = plus(sums->by.bend, s.twist[0]);
-    end_sums(sums, m, correction, h, circle);
+    end_sums(sums, m, &start, &s, correction, h, circle);
     return LACONIC_OK;
 }
 
@@ -162,12 +168,9 @@ laconic_status laconic_articulated_rk4(laconic_articulated_state *state, const l
                                        const articulated_course *course, real from, real share, bool circle,
                                        real largest, laconic_refusal *why) {
     stage_sums sums;
-    articulated_drive room;
     laconic_status status = circle ? circle_stages(&sums, state, m, course, from, share, largest, why)
                                    : plain_stages(&sums, state, m, course, from, share, largest, why);
     if (status != LACONIC_OK) return status;
-    if (m->coordinated)
-        laconic_articulated_turn_coordinated(&sums.by, m, state, drive_at(&room, course, m, from + share));
     status = laconic_articulated_accept(state, m, &sums.by, share * course->step_s);
     return status == LACONIC_OK ? status
                                 : refuse(why, status, LACONIC_FIELD_STEP, 0, share * course->step_s, R(0));

@@ -176,7 +176,7 @@ laconic_status laconic_articulated_state_set(laconic_articulated_state *state, l
     if (status == LACONIC_OK) status = laconic_articulated_input_check(model, input, why);
     if (status != LACONIC_OK) return status;
     laconic_articulated_drive_of(&drive, model, input);
-    if (model->coordinated) status = laconic_articulated_check_twist(model, &drive, &drive, R(0), why);
+    if (model->coordinated) status = laconic_articulated_check_twist(model, &drive, &drive, R(1), why);
     if (status != LACONIC_OK) return status;
     set_hinges(&fresh, model, start, &drive);
     fresh.x_m = sum_of(start->x_m);
@@ -195,11 +195,10 @@ laconic_status laconic_articulated_state_set(laconic_articulated_state *state, l
 void laconic_articulated_turn_coordinated(articulated_increment *by, const laconic_articulated_model *m,
                                           const laconic_articulated_state *state, const articulated_drive *end) {
     for (int32_t b = 1; m->coordinated && b <= m->body_count; b++) {
-        direction d;
-        real rate, acceleration;
-        if (m->link[b - 1].motion != LACONIC_MOTION_COORDINATED) continue;
-        (void)laconic_articulated_coordinate(&d, &rate, &acceleration, &m->link[b - 1], end->twist);
-        by->turn_rad[b - 1] = laconic_articulated_turn_from_to(direction_of_heading(&state->hinge[b - 1]), d);
+        const laconic_link *link = &m->link[b - 1];
+        const direction before = direction_of_heading(&state->hinge[b - 1]);
+        if (link->motion == LACONIC_MOTION_COORDINATED)
+            by->turn_rad[b - 1] = laconic_articulated_angle_of(from_to(before, twist_at_hinge(link, end->twist[0])));
     }
 }
 

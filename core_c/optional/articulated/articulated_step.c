@@ -3,8 +3,7 @@
 
 #if LACONIC_MAX_BODIES > 0
 
-#define SAME_DIRECTION_RAD (R(100) * LACONIC_RANK_TOLERANCE) /* of a twist that goes on as it was */
-#define QUARTER_TURN_RAD R(1.5707964)
+#define SAME_DIRECTION (R(100) * LACONIC_RANK_TOLERANCE) /* sine: of a twist that goes on as it was */
 
 static const char *const method_names[LACONIC_ARTICULATED_METHOD_COUNT] = {"auto", "rk4", "circle", "moebius-4"};
 
@@ -95,7 +94,7 @@ static laconic_status follow_jump(laconic_articulated_state *state, const laconi
     laconic_articulated_drive_kept(&kept, m, state);
     if (m->coordinated) {
         const laconic_status status =
-            laconic_articulated_check_twist(m, &kept, drive, SAME_DIRECTION_RAD, why);
+            laconic_articulated_check_twist(m, &kept, drive, SAME_DIRECTION, why);
         if (status != LACONIC_OK) return status;
     }
     return laconic_articulated_take_drive(state, m, drive, why);
@@ -127,12 +126,14 @@ static laconic_status take_course(articulated_course *course, const laconic_arti
     course->constant = start == end;
     for (int32_t b = 0; b < m->body_count; b++)
         if (course->start.acceleration[b] != R(0)) course->constant = false;
-    if (square(course->start.twist[1]) > R(0)) course->constant = false;
+    if (course->start.turns) course->constant = false;
     if (course->constant) return LACONIC_OK;
     laconic_articulated_drive_of(&course->end, m, end);
     status = check_drive(&course->end, m, end, why);
-    if (status != LACONIC_OK || !m->coordinated) return status;
-    return laconic_articulated_check_twist(m, &course->start, &course->end, QUARTER_TURN_RAD, why);
+    if (status != LACONIC_OK) return status;
+    laconic_articulated_course_of(course, m);
+    if (!m->coordinated) return LACONIC_OK;
+    return laconic_articulated_check_twist(m, &course->start, &course->end, R(1), why);
 }
 
 static laconic_status by_method(laconic_articulated_state *state, const laconic_articulated_model *m,

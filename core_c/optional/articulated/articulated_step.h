@@ -9,11 +9,24 @@
 
 /* ------------------------------------------------------------------------ the input over a step -- */
 
+/* start + s (slope + s (square + s cube)), s from 0 to 1. */
+typedef struct articulated_cubic {
+    real start, slope, square, cube;
+} articulated_cubic;
+
 typedef struct articulated_course {
     articulated_drive start, end;
     real step_s, rate_per_step; /* h, 1/h */
-    bool constant;              /* the same at every moment */
+    bool constant;              /* the same at every moment; then only `start` is set */
+    bool forces_vary, turns;    /* forces or torques differ at both ends; T does      */
+    articulated_cubic rate[LACONIC_MAX_BODIES], twist[3];
 } articulated_course;
+
+/* The drive at one share of the step, kept while stages ask for the same. */
+typedef struct articulated_moment {
+    articulated_drive drive;
+    real at;
+} articulated_moment;
 
 /* Forces, torques, rates and T, T' of one input; T'' is 0. */
 void laconic_articulated_drive_of(articulated_drive *drive, const laconic_articulated_model *m,
@@ -23,25 +36,32 @@ void laconic_articulated_drive_of(articulated_drive *drive, const laconic_articu
 void laconic_articulated_drive_kept(articulated_drive *drive, const laconic_articulated_model *m,
                                     const laconic_articulated_state *state);
 
-/* The course at the share `at` of the step, 0 … 1. */
-void laconic_articulated_drive_at(articulated_drive *drive, const articulated_course *course,
-                                  const laconic_articulated_model *m, real at);
+/* Cubics and flags of a course whose ends are set and that is not constant. */
+void laconic_articulated_course_of(articulated_course *course, const laconic_articulated_model *m);
 
-/* The drive at a share: that of the start where it is the same everywhere. */
-static inline const articulated_drive *drive_at(articulated_drive *room, const articulated_course *course,
-                                                const laconic_articulated_model *m, real at) {
+void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course,
+                                      const laconic_articulated_model *m);
+void laconic_articulated_move_moment(articulated_moment *moment, const articulated_course *course,
+                                     const laconic_articulated_model *m, real at);
+
+/* The drive at a share of the step: that of the start where it is the same everywhere. */
+INLINE const articulated_drive *drive_at(articulated_moment *moment, const articulated_course *course,
+                                         const laconic_articulated_model *m, real at) {
     if (course->constant) return &course->start;
-    laconic_articulated_drive_at(room, course, m, at);
-    return room;
+    if (moment->at != at) laconic_articulated_move_moment(moment, course, m, at);
+    return &moment->drive;
 }
+
+/* ∫ of the rate of prescribed hinge b from one share of the step on. */
+real laconic_articulated_commanded_turn(const articulated_course *course, int32_t b, real from, real share);
 
 /* False where a number of it is not finite. */
 bool laconic_articulated_drive_is_finite(const articulated_drive *drive, const laconic_articulated_model *m);
 
-/* Refuses a twist that the carriage's wheels do not allow, or that turns a hinge too far between the two. */
+/* Refuses a twist that the carriage's wheels do not allow, or that gives a hinge no direction or turns it too far between
+ * the two: beyond that sine, or beyond a quarter turn. */
 laconic_status laconic_articulated_check_twist(const laconic_articulated_model *m, const articulated_drive *from,
-                                               const articulated_drive *to, real largest_turn_rad,
-                                               laconic_refusal *why);
+                                               const articulated_drive *to, real largest_sine, laconic_refusal *why);
 
 /* ------------------------------------------------------------------------- angles and directions -- */
 
@@ -75,6 +95,7 @@ INLINE void take_posture_of(articulated_sweep *s, const laconic_articulated_mode
         s->angle_rad[b] = R(0);
         if (m->link[b].stiffness_Nm > R(0)) s->angle_rad[b] = heading_unwrapped(&state->hinge[b]) - m->link[b].rest_rad;
     }
+    forget_sizes(s, m);
 }
 
 static inline void take_eta(real *eta, const laconic_articulated_model *m, const laconic_articulated_state *state) {

@@ -31,6 +31,7 @@ typedef struct articulated_drive {
     real rate[LACONIC_MAX_BODIES];     /* r of prescribed hinges                                   */
     real acceleration[LACONIC_MAX_BODIES];
     vector twist[3];                   /* T, T', T'' of S_0                                        */
+    bool turns;                        /* T' or T'' is not 0                                       */
     real world_force[2], world_force_point[2];
     bool rotates;                      /* a force fixed in the world acts                          */
 } articulated_drive;
@@ -49,8 +50,11 @@ typedef struct articulated_sweep {
     vector row[LACONIC_MAX_LEFT_ROWS];            /* left row, seen at one body                                 */
     real row_of_own[LACONIC_MAX_LEFT_ROWS][LACONIC_MAX_BODIES];
     real row_bias[LACONIC_MAX_LEFT_ROWS], row_value[LACONIC_MAX_LEFT_ROWS];
-    vector along[1];                              /* T/|T| in the metric of body 0, where it is commanded       */
+    vector along[1];                              /* U = T/|T| in the metric of body 0, where it is commanded   */
     vector along_rate;
+    real along_share;          /* T·I₀T'/|T|²                                                                          */
+    real module_mass, module_push; /* of coordinated leaves, seen along U; 0 where they are summed at the root       */
+    real inverse_size[BODIES]; /* 1/|w| of coordinated hinges, 1/|T| of body 0, of the posture before; 0: unknown       */
     real mass[LACONIC_MAX_VELOCITIES][LACONIC_MAX_VELOCITIES]; /* lower half                                     */
     real push[LACONIC_MAX_VELOCITIES];                         /* right side                                     */
     real left[LACONIC_MAX_LEFT_ROWS][LACONIC_MAX_VELOCITIES];  /* C                                              */
@@ -72,13 +76,81 @@ static inline real following_rate(const laconic_link *link, vector v) {
     return -(link->axle_per_lever.x * v.x + link->axle_per_lever.y * v.y);
 }
 
-/* The commanded motion of the carriage: U = T/|T|, U', where |T|² = T·I₀T. False where T is 0. */
-bool laconic_articulated_unit_twist(vector *unit, vector *unit_rate, const laconic_articulated_model *m,
-                                    const articulated_drive *drive);
+/* ----------------------------------------------------------------------------- coordinated steering --
+ *
+ * One twist T(t) = (T_ξ, T_η, T_θ) commands every steered wheel, so that the carriage has one degree of freedom, X_0 = σ U
+ * with U = T/|T|, |T|² = T·I₀T, and the rank of the wheels' rows is exact: no angle is given twice. A hinge at h points
+ * along w = T_v + i T_θ h:
+ *
+ *     e^{iψ} = w/|w|,     ψ' = Im(w'/w),     ψ'' = Im(w''/w) − 2 ψ' Re(w'/w),     U' = T'/|T| − U (T·I₀T')/|T|² */
 
-/* One coordinated hinge: direction, ψ' and ψ'' of w = T_v + i T_θ h. False where w is 0. */
-bool laconic_articulated_coordinate(direction *d, real *rate, real *acceleration, const laconic_link *link,
-                                    const vector twist[3]);
+/* 1/√x, from a number that is near it, or by a root. 0 where x is not positive or not finite. */
+real laconic_articulated_inverse_root(real x);
+
+/* Two rounds of Halley's kind, each of which takes e to about e³. */
+INLINE real inverse_root_near(real x, real guess) {
+    real e = R(1) - x * guess * guess;
+    if (!(magnitude(e) < R(0.02))) return laconic_articulated_inverse_root(x);
+    guess += guess * e * (R(0.5) + R(0.375) * e);
+    e = R(1) - x * guess * guess;
+    return guess + guess * e * (R(0.5) + R(0.375) * e);
+}
+
+/* U and U'. False where T is 0. */
+INLINE bool take_unit_twist(articulated_sweep *s, const laconic_articulated_model *m, const articulated_drive *drive) {
+    const vector t = drive->twist[0], momentum = form_times(&m->inertia, t);
+    const real inverse = inverse_root_near(dot(momentum, t), s->inverse_size[0]);
+    s->inverse_size[0] = inverse;
+    s->along[0] = scaled(inverse, t);
+    s->along_rate = none;
+    s->along_share = R(0);
+    if (drive->turns) {
+        s->along_share = inverse * inverse * dot(momentum, drive->twist[1]);
+        s->along_rate = minus(scaled(inverse, drive->twist[1]), scaled(s->along_share, s->along[0]));
+    }
+    return inverse > R(0);
+}
+
+static inline direction twist_at_hinge(const laconic_link *link, vector twist) {
+    return direction_with(twist.x - twist.z * link->hinge.y, twist.y + twist.z * link->hinge.x);
+}
+
+/* Whether w is long enough beside T_v, of which it is the rest near a turning centre. */
+static inline bool has_direction(real w_square, vector twist) {
+    return w_square > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE * (twist.x * twist.x + twist.y * twist.y);
+}
+
+typedef struct coordinated_motion {
+    direction w;            /* not of length 1 */
+    real square_size, size; /* |w|², |w|       */
+    real rate, acceleration, growth; /* ψ', ψ'', |w|'/|w| */
+} coordinated_motion;
+
+/* Coordinated hinge b; sets its direction. A hinge without one has the size 0. */
+INLINE coordinated_motion coordinate(articulated_sweep *s, const laconic_link *link, const articulated_drive *drive,
+                                     int32_t b) {
+    const direction w = twist_at_hinge(link, drive->twist[0]);
+    coordinated_motion c = {w, w.cosine * w.cosine + w.sine * w.sine, R(0), R(0), R(0), R(0)};
+    real guess = s->inverse_size[b];
+    if (guess == R(0)) guess = R(1) / (s->toward[b - 1].cosine * w.cosine + s->toward[b - 1].sine * w.sine);
+    const real inverse = inverse_root_near(c.square_size, guess);
+    s->inverse_size[b] = inverse;
+    s->toward[b - 1] = direction_with(w.cosine * inverse, w.sine * inverse);
+    if (has_direction(c.square_size, drive->twist[0])) c.size = c.square_size * inverse;
+    if (drive->turns) {
+        const direction w1 = twist_at_hinge(link, drive->twist[1]), w2 = twist_at_hinge(link, drive->twist[2]);
+        const real per_square = inverse * inverse;
+        c.rate = (w.cosine * w1.sine - w.sine * w1.cosine) * per_square;
+        c.growth = (w.cosine * w1.cosine + w.sine * w1.sine) * per_square;
+        c.acceleration = (w.cosine * w2.sine - w.sine * w2.cosine) * per_square - R(2) * c.rate * c.growth;
+    }
+    return c;
+}
+
+/* Forgets sizes of another posture. */
+static inline void forget_sizes(articulated_sweep *s, const laconic_articulated_model *m) {
+    for (int32_t b = 0; m->coordinated && b <= m->body_count; b++) s->inverse_size[b] = R(0);
+}
 
 /* --------------------------------------------------------------------------------- root to leaf -- */
 
@@ -147,14 +219,17 @@ INLINE void sweep_root(articulated_sweep *s, const laconic_articulated_model *m,
  * whose w is 0, −1 where T is 0, else 0. */
 INLINE int32_t sweep_outward(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
                              const articulated_drive *drive) {
-    if (m->coordinated && !laconic_articulated_unit_twist(&s->along[0], &s->along_rate, m, drive)) return -1;
+    if (m->coordinated && !take_unit_twist(s, m, drive)) return -1;
     sweep_root(s, m, eta);
     for (int32_t b = 1; b <= m->body_count; b++) {
         const laconic_link *link = &m->link[b - 1];
         real rate = drive->rate[b - 1], acceleration = drive->acceleration[b - 1];
-        if (link->motion == LACONIC_MOTION_COORDINATED &&
-            !laconic_articulated_coordinate(&s->toward[b - 1], &rate, &acceleration, link, drive->twist))
-            return b;
+        if (link->motion == LACONIC_MOTION_COORDINATED) {
+            const coordinated_motion c = coordinate(s, link, drive, b);
+            if (!(c.size > R(0))) return b;
+            rate = c.rate;
+            acceleration = c.acceleration;
+        }
         sweep_child(s, m, b, eta, rate, acceleration);
     }
     return 0;
@@ -318,6 +393,7 @@ INLINE void sweep_inward(articulated_sweep *s, const laconic_articulated_model *
     const laconic_form zero = {R(0), R(0), R(0), R(0), R(0), R(0)};
     const bool simple = m->own_count + m->row_count == 0;
     s->inertia[0] = zero;
+    s->module_mass = s->module_push = R(0);
     for (int32_t b = 1; b <= m->body_count; b++) s->inertia[b] = m->link[b - 1].inertia;
     if (!simple) begin_inward(s, m);
     read_rows(s, m);
@@ -352,7 +428,7 @@ INLINE void push_root(articulated_sweep *s, const laconic_articulated_model *m, 
     const vector force = s->force[0];
     const bool decays = LACONIC_WITH_DAMPING && damped;
     if (m->coordinated) {
-        s->push[0] = dot(s->along[0], force);
+        s->push[0] = dot(s->along[0], force) + s->module_push;
         return;
     }
     s->push[0] = dot(m->column[0], force) - (decays ? m->decay_per_s[0] * eta[0] : R(0));
@@ -370,7 +446,7 @@ static inline real form_product(const laconic_form *a, const laconic_form *b) {
 INLINE void mass_of_root(articulated_sweep *s, const laconic_articulated_model *m) {
     const laconic_form *a = &s->inertia[0];
     if (m->coordinated) {
-        s->mass[0][0] = R(1) + dot(s->along[0], form_times(a, s->along[0]));
+        s->mass[0][0] = R(1) + dot(s->along[0], form_times(a, s->along[0])) + s->module_mass;
         return;
     }
     s->mass[0][0] = R(1) + form_product(&m->pair[0], a);
@@ -518,15 +594,41 @@ INLINE void visit_inner(articulated_sweep *s, const laconic_link *link, const ar
     s->force[link->parent].z -= torque;
 }
 
+/* A coordinated body on which nothing hangs rolls along its ξ with σμ, μ = |w|/|T|, whatever ψ: X = (σμ, 0, ω) with
+ * γ = (σμ', 0, σU_θ' + ψ''). So it counts along U at once, and no vector is turned. */
+INLINE bool visit_module(articulated_sweep *s, const articulated_drive *drive, const laconic_link *link, real sigma,
+                         int32_t b) {
+    const coordinated_motion c = coordinate(s, link, drive, b);
+    const laconic_form *in = &link->inertia, *drag = &link->drag;
+    const real mu = c.size * s->inverse_size[0], yaw = s->along[0].z;
+    const vector v = vector_of(sigma * mu, R(0), sigma * yaw + c.rate), force = drive->force[b];
+    const real gx = v.x * (c.growth - s->along_share), gw = sigma * s->along_rate.z + c.acceleration;
+    real x = v.z * v.z * link->first_moment.x + force.x - (in->xx * gx + in->xw * gw);
+    real moment = force.z - v.z * link->first_moment.x * v.x - (in->xw * gx + in->ww * gw);
+    if (LACONIC_WITH_DAMPING && link->drags) {
+        x -= drag->xx * v.x + drag->xw * v.z;
+        moment -= drag->xw * v.x + drag->ww * v.z;
+    }
+    s->module_push += mu * x + yaw * moment;
+    s->module_mass += mu * (in->xx * mu + R(2) * in->xw * yaw) + in->ww * yaw * yaw;
+    s->twist[b] = v;
+    s->rate[b - 1] = c.rate;
+    return c.size > R(0);
+}
+
 /* One body, from its parent outward. Returns false for a coordinated hinge that gets no direction. */
 INLINE bool visit(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
                   const articulated_drive *drive, int32_t b) {
     const laconic_link *link = &m->link[b - 1];
     const bool still = link->parent == 0 && !m->coordinated;
     real rate = drive->rate[b - 1], acceleration = drive->acceleration[b - 1];
-    if (link->motion == LACONIC_MOTION_COORDINATED &&
-        !laconic_articulated_coordinate(&s->toward[b - 1], &rate, &acceleration, link, drive->twist))
-        return false;
+    if (link->motion == LACONIC_MOTION_COORDINATED) {
+        if (link->is_leaf) return visit_module(s, drive, link, eta[0], b);
+        const coordinated_motion commanded = coordinate(s, link, drive, b);
+        if (!(commanded.size > R(0))) return false;
+        rate = commanded.rate;
+        acceleration = commanded.acceleration;
+    }
     const direction d = s->toward[b - 1];
     const child_motion c =
         motion_of_child(link, d, s->twist[link->parent], still ? NULL : &s->bias[link->parent],
@@ -564,10 +666,11 @@ INLINE int32_t sweep_all(articulated_sweep *s, const laconic_articulated_model *
                          const articulated_drive *drive, direction heading) {
     const laconic_form zero = {R(0), R(0), R(0), R(0), R(0), R(0)};
     if (drive->rotates) return laconic_articulated_sweep_rotating(s, m, eta, drive, heading);
-    if (m->coordinated && !laconic_articulated_unit_twist(&s->along[0], &s->along_rate, m, drive)) return -1;
+    if (m->coordinated && !take_unit_twist(s, m, drive)) return -1;
     sweep_root(s, m, eta);
     s->force[0] = load_of_carriage(s, m, drive->force[0]);
     s->inertia[0] = zero;
+    s->module_mass = s->module_push = R(0);
     if (m->own_count + m->row_count > 0) begin_inward(s, m);
     for (int32_t b = 1; b <= m->body_count; b++)
         if (!visit(s, m, eta, drive, b)) return b;
