@@ -144,12 +144,14 @@ typedef struct laconic_link {
     int32_t parent;
     laconic_hinge_motion motion;
     int32_t column;                 /* of its ω in η, where that is its own; else −1                   */
+    int32_t first_row, row_end;     /* rows left over of this body: first_row … row_end − 1             */
     uint32_t own_below, rows_below; /* bit k: own hinge k, row k belongs to this body or hangs on it    */
     laconic_vector hinge;           /* from the parent's origin (parent 0: from S_0); z is 0            */
     laconic_vector first_moment;    /* m s_ξ, m s_η, m                                                  */
     laconic_form inertia, drag;     /* I_b, D_b                                                         */
     bool drags;                     /* D_b is not 0                                                     */
     bool is_leaf;                   /* no other body hangs on it                                        */
+    bool is_plain_follower;         /* a following leaf without rows left over                          */
     laconic_form followed_inertia, followed_drag; /* of a following hinge: on V alone, ω put in          */
     laconic_vector axle_per_lever;  /* of a following hinge: n/ℓ, and 1/ℓ as z                          */
     laconic_real damping_Nms, stiffness_Nm, rest_rad, gain_Nm_per_V;

@@ -147,8 +147,10 @@ static laconic_status classify(laconic_articulated_model *m, laconic_hinge_kind 
     if (kind != LACONIC_HINGE_PRESCRIBED) followed = row_with_lever(&rows);
     if (followed >= 0) follow_row(link, &rows, followed, m->length_m);
     if (link->motion == LACONIC_MOTION_OWN) link->column = m->own_count++;
+    link->first_row = m->row_count;
     for (int32_t k = 0; k < rows.count; k++)
         if (k != followed) leave_row(m, b, rows.row[k], rows.wheel[k]);
+    link->row_end = m->row_count;
     return LACONIC_OK;
 }
 
@@ -206,6 +208,9 @@ static void mark_leaves(laconic_articulated_model *m) {
         m->link[link->parent - 1].is_leaf = false;
         if (link->parent > m->last_inner) m->last_inner = link->parent;
     }
+    for (int32_t b = 0; b < m->body_count; b++)
+        m->link[b].is_plain_follower =
+            m->link[b].is_leaf && m->link[b].motion == LACONIC_MOTION_FOLLOWING && m->link[b].rows_below == 0U;
 }
 
 laconic_status laconic_articulated_links(laconic_articulated_model *m, const laconic_articulated_vehicle *vehicle,

@@ -82,10 +82,14 @@ INLINE void clear_sums(stage_sums *sums, const laconic_articulated_model *m) {
     for (int32_t b = 0; b < m->body_count; b++) sums->by.turn_rad[b] = R(0);
 }
 
-INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconic_articulated_model *m,
-                      const real *eta_rate, int g) {
+/* η' and mean twists; η of the next stage. */
+INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconic_articulated_model *m, real *eta,
+                      const real *eta0, const real *eta_rate, int g, real ahead) {
     const real share = stage_weight[g];
-    for (int32_t i = 0; i < m->dof; i++) sums->by.eta[i] += share * eta_rate[i];
+    for (int32_t i = 0; i < m->dof; i++) {
+        sums->by.eta[i] += share * eta_rate[i];
+        eta[i] = eta0[i] + ahead * eta_rate[i];
+    }
     for (int32_t b = 0; b <= m->body_count; b++)
         sums->by.mean[b] = plus(sums->by.mean[b], scaled(share, s->twist[b]));
 }
@@ -143,9 +147,8 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
             restore_rows(eta0, m, correction);
         }
         if (drive->rotates) facing = turned_by(heading, ahead * s.twist[0].z);
-        add_stage(sums, &s, m, rate, g);
+        add_stage(sums, &s, m, eta, eta0, rate, g, ahead);
         turn_hinges(sums, &s, m, &start, g, h, ahead, circle);
-        for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i] + ahead * rate[i];
     }
     sums->by.bend = plus(sums->by.bend, s.twist[0]);
     end_sums(sums, m, &start, &s, correction, h, circle);

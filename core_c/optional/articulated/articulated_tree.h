@@ -369,22 +369,20 @@ static inline void pull_others(articulated_sweep *s, const laconic_articulated_m
         if (link->rows_below >> r & 1U) s->row[r] = pulled(link, d, s->row[r]);
 }
 
-/* Makes entries between own hinges that are not on one path 0, and the rows those of their bodies. */
+/* Makes entries between own hinges that are not on one path 0, and those of rows. */
 static inline void begin_inward(articulated_sweep *s, const laconic_articulated_model *m) {
-    for (int32_t k = 0; k < m->own_count; k++)
+    for (int32_t k = 1; k < m->own_count; k++)
         for (int32_t j = 0; j < k; j++) s->mass[m->carriage_dof + k][m->carriage_dof + j] = R(0);
-    for (int32_t r = 0; r < m->row_count; r++) {
-        s->row[r] = m->row[r].axle;
+    for (int32_t r = 0; r < m->row_count; r++)
         for (int32_t k = 0; k < m->own_count; k++) s->row_of_own[r][k] = R(0);
-    }
 }
 
-/* n·V + ℓω of each row left over, and its derivative at η' = 0. */
-static inline void read_rows(articulated_sweep *s, const laconic_articulated_model *m) {
-    for (int32_t r = 0; r < m->row_count; r++) {
-        const laconic_left_row *row = &m->row[r];
-        s->row_bias[r] = dot(row->axle, s->bias[row->body]);
-        s->row_value[r] = dot(row->axle, s->twist[row->body]);
+/* Rows left over of one body, as they are there. */
+static inline void begin_rows(articulated_sweep *s, const laconic_articulated_model *m, int32_t b) {
+    for (int32_t r = m->link[b - 1].first_row; r < m->link[b - 1].row_end; r++) {
+        s->row[r] = m->row[r].axle;
+        s->row_bias[r] = dot(s->row[r], s->bias[b]);
+        s->row_value[r] = dot(s->row[r], s->twist[b]);
     }
 }
 
@@ -396,10 +394,10 @@ INLINE void sweep_inward(articulated_sweep *s, const laconic_articulated_model *
     s->module_mass = s->module_push = R(0);
     for (int32_t b = 1; b <= m->body_count; b++) s->inertia[b] = m->link[b - 1].inertia;
     if (!simple) begin_inward(s, m);
-    read_rows(s, m);
     for (int32_t b = m->body_count; b >= 1; b--) {
         const laconic_link *link = &m->link[b - 1];
         const direction d = s->toward[b - 1];
+        if (!simple) begin_rows(s, m, b);
         if (!simple && link->motion == LACONIC_MOTION_OWN) meet_own(s, m, b, &s->inertia[b], s->force[b].z);
         if (!simple) pull_others(s, m, b);
         pull_inertia(&s->inertia[link->parent], link, d, &s->inertia[b]);
@@ -438,15 +436,15 @@ INLINE void push_root(articulated_sweep *s, const laconic_articulated_model *m, 
         s->push[2] = dot(m->column[2], force) - (decays ? m->decay_per_s[2] * eta[2] : R(0));
 }
 
-static inline real form_product(const laconic_form *a, const laconic_form *b) {
-    return (a->xx * b->xx + a->xy * b->xy) + (a->yy * b->yy + a->xw * b->xw) + (a->yw * b->yw + a->ww * b->ww);
+static inline real form_product(const laconic_form *a, laconic_form b) {
+    return (a->xx * b.xx + a->xy * b.xy) + (a->yy * b.yy + a->xw * b.xw) + (a->yw * b.yw + a->ww * b.ww);
 }
 
 /* E₀ + columnᵀ A column */
 INLINE void mass_of_root(articulated_sweep *s, const laconic_articulated_model *m) {
-    const laconic_form *a = &s->inertia[0];
+    const laconic_form a = s->inertia[0];
     if (m->coordinated) {
-        s->mass[0][0] = R(1) + dot(s->along[0], form_times(a, s->along[0])) + s->module_mass;
+        s->mass[0][0] = R(1) + dot(s->along[0], form_times(&a, s->along[0])) + s->module_mass;
         return;
     }
     s->mass[0][0] = R(1) + form_product(&m->pair[0], a);
@@ -543,42 +541,61 @@ INLINE bool solve_steered(real *x, real *correction, const articulated_sweep *s,
 laconic_status laconic_articulated_refuse_twist(int32_t hinge, const laconic_articulated_model *m,
                                                 const articulated_drive *drive, laconic_refusal *why);
 
-/* A body at whose hinge nothing else hangs: its forces and inertia count at the parent at once, from registers. A
- * following one has constants for V alone: I and D with ω = −n·V/ℓ put in. */
+/* A following body on which nothing hangs: its forces and inertia count at the parent at once, from registers, by
+ * constants for V alone, I and D with ω = −n·V/ℓ put in. `bias`: γ of the parent; NULL: it is 0. */
 INLINE void visit_follower(articulated_sweep *s, const laconic_link *link, const articulated_drive *drive, int32_t b,
-                           direction d, const child_motion *c) {
-    const vector v = c->twist, g = c->bias, force = drive->force[b], a = gyroscopic(link->first_moment, v);
+                           const vector *bias) {
+    const direction d = s->toward[b - 1];
+    const vector parent = s->twist[link->parent], force = drive->force[b];
+    vector v = carried(link, d, parent), g = bias != NULL ? carried(link, d, *bias) : none;
     const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
-    const real torque = hinge_torque(link, drive, c->rate, s->angle_rad[b - 1], b);
-    const real moment = a.z + force.z + torque;
+    v.z = -(mx * v.x + my * v.y);
+    const real rate = v.z - parent.z, gx = g.x + rate * v.y, gy = g.y - rate * v.x;
+    const vector a = gyroscopic(link->first_moment, v);
+    const real torque = hinge_torque(link, drive, rate, s->angle_rad[b - 1], b), moment = a.z + force.z + torque;
     const laconic_form *in = &link->followed_inertia, *drag = &link->followed_drag;
-    real x = a.x + force.x - mx * moment - (in->xx * g.x + in->xy * g.y);
-    real y = a.y + force.y - my * moment - (in->xy * g.x + in->yy * g.y);
+    real x = a.x + force.x - mx * moment - (in->xx * gx + in->xy * gy);
+    real y = a.y + force.y - my * moment - (in->xy * gx + in->yy * gy);
     if (LACONIC_WITH_DAMPING && link->drags) {
         x -= drag->xx * v.x + drag->xy * v.y;
         y -= drag->xy * v.x + drag->yy * v.y;
     }
     const vector pull = turned(d, x, y);
-    vector *parent = &s->force[link->parent];
-    parent->x += pull.x;
-    parent->y += pull.y;
-    parent->z += link->hinge.x * pull.y - link->hinge.y * pull.x - torque;
     const plane_form plane = {in->xx, in->xy, in->yy};
+    vector *at = &s->force[link->parent];
+    at->x += pull.x;
+    at->y += pull.y;
+    at->z += link->hinge.x * pull.y - link->hinge.y * pull.x - torque;
     pull_plane(&s->inertia[link->parent], link, d, plane);
+    s->twist[b] = v;
+    s->rate[b - 1] = rate;
 }
 
+/* Another body on which nothing hangs: its own hinge and its rows left over are its alone. */
 INLINE void visit_other_leaf(articulated_sweep *s, const laconic_articulated_model *m, const articulated_drive *drive,
                              int32_t b, direction d, const child_motion *c) {
     const laconic_link *link = &m->link[b - 1];
+    const laconic_form *in = &link->inertia;
     vector w = load_of(link, drive->force[b], c->twist, c->bias);
-    if (link->motion == LACONIC_MOTION_OWN) {
+    if (link->motion <= LACONIC_MOTION_OWN) {
         const real torque = hinge_torque(link, drive, c->rate, s->angle_rad[b - 1], b);
         w.z += torque;
         s->force[link->parent].z -= torque;
-        meet_own(s, m, b, &link->inertia, w.z);
     }
-    if (m->own_count + m->row_count > 0) pull_others(s, m, b);
-    pull_inertia(&s->inertia[link->parent], link, d, &link->inertia);
+    if (link->motion == LACONIC_MOTION_OWN) {
+        const int32_t i = m->carriage_dof + link->column;
+        s->mass[i][i] = in->ww;
+        s->push[i] = w.z;
+        s->own[link->column] = pulled(link, d, vector_of(in->xw, in->yw, R(0)));
+    }
+    for (int32_t r = link->first_row; r < link->row_end; r++) {
+        const vector axle = m->row[r].axle;
+        if (link->motion == LACONIC_MOTION_OWN) s->row_of_own[r][link->column] = axle.z;
+        s->row[r] = pulled(link, d, axle);
+        s->row_bias[r] = dot(axle, c->bias);
+        s->row_value[r] = dot(axle, c->twist);
+    }
+    pull_inertia(&s->inertia[link->parent], link, d, in);
     s->force[link->parent] = plus(s->force[link->parent], pulled(link, d, w));
 }
 
@@ -620,7 +637,11 @@ INLINE bool visit_module(articulated_sweep *s, const articulated_drive *drive, c
 INLINE bool visit(articulated_sweep *s, const laconic_articulated_model *m, const real *eta,
                   const articulated_drive *drive, int32_t b) {
     const laconic_link *link = &m->link[b - 1];
-    const bool still = link->parent == 0 && !m->coordinated;
+    const vector *bias = link->parent == 0 && !m->coordinated ? NULL : &s->bias[link->parent];
+    if (link->is_plain_follower) {
+        visit_follower(s, link, drive, b, bias);
+        return true;
+    }
     real rate = drive->rate[b - 1], acceleration = drive->acceleration[b - 1];
     if (link->motion == LACONIC_MOTION_COORDINATED) {
         if (link->is_leaf) return visit_module(s, drive, link, eta[0], b);
@@ -631,15 +652,11 @@ INLINE bool visit(articulated_sweep *s, const laconic_articulated_model *m, cons
     }
     const direction d = s->toward[b - 1];
     const child_motion c =
-        motion_of_child(link, d, s->twist[link->parent], still ? NULL : &s->bias[link->parent],
-                        own_rate_or_0(m, link, eta), rate, acceleration);
+        motion_of_child(link, d, s->twist[link->parent], bias, own_rate_or_0(m, link, eta), rate, acceleration);
     s->twist[b] = c.twist;
     s->rate[b - 1] = c.rate;
-    if (link->rows_below != 0U) s->bias[b] = c.bias;
     if (!link->is_leaf)
         visit_inner(s, link, drive, b, &c);
-    else if (link->motion == LACONIC_MOTION_FOLLOWING && link->rows_below == 0U)
-        visit_follower(s, link, drive, b, d, &c);
     else
         visit_other_leaf(s, m, drive, b, d, &c);
     return true;
@@ -650,6 +667,7 @@ INLINE void gather(articulated_sweep *s, const laconic_articulated_model *m) {
     for (int32_t b = m->last_inner; b >= 1; b--) {
         const laconic_link *link = &m->link[b - 1];
         if (link->is_leaf) continue;
+        begin_rows(s, m, b);
         if (link->motion == LACONIC_MOTION_OWN) meet_own(s, m, b, &s->inertia[b], s->force[b].z);
         if (m->own_count + m->row_count > 0) pull_others(s, m, b);
         pull_inertia(&s->inertia[link->parent], link, s->toward[b - 1], &s->inertia[b]);
@@ -674,7 +692,6 @@ INLINE int32_t sweep_all(articulated_sweep *s, const laconic_articulated_model *
     if (m->own_count + m->row_count > 0) begin_inward(s, m);
     for (int32_t b = 1; b <= m->body_count; b++)
         if (!visit(s, m, eta, drive, b)) return b;
-    read_rows(s, m);
     gather(s, m);
     return 0;
 }
