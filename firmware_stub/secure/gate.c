@@ -49,7 +49,7 @@ bool laconic_gate_take(laconic_gate *gate, const laconic_frame *frame, laconic_f
     if (ours && needs_code(frame, offset)) {
         if (gate->waits) gate->bare++;
         gate->held = *frame;
-        gate->waits = frame->length <= LACONIC_FRAME_BYTES;
+        gate->waits = laconic_frame_fits(frame);
         return false;
     }
     *out = *frame;

@@ -218,9 +218,10 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
         /* a condition cannot be reached: the last decides nothing, as the tests' build leaves out nothing */
-    } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) ||
+    } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !speaks_fd(node)) ||
                /* cannot be reached: the tests' build leaves out nothing */
-               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & ESTIMATE_LEFT_OUT)) != 0) {
+               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & (TAKES_LEFT_OUT | ESTIMATE_LEFT_OUT))) !=
+                   0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
 #if LACONIC_NODE_WITH_ESTIMATE
