@@ -24,7 +24,8 @@
  * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
  * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
  * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
- * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. */
+ * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. ROUNDED is
+ * 2.5 units in the last place in both types. It must exceed HIDDEN, which is part of the residual that it bounds. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define RESOLVED R(4e-5)
@@ -37,7 +38,7 @@
 #else
 #define TOLERANCE R(1e-12)
 #define RESOLVED R(3e-11)
-#define ROUNDED R(1e-16)
+#define ROUNDED R(6e-16)
 #define CLOSE R(900)
 #define SNAP R(1e-10)
 #define BORDER R(0.998)
