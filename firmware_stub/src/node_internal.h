@@ -49,6 +49,15 @@ static inline bool is_running(const laconic_node *node) {
            node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node);
 }
 
+/* Whether there is a vehicle whose model may be read. A wrong one may have counts beyond its arrays. */
+static inline bool has_model(const laconic_node *node) {
+    return node->state != LACONIC_WIRE_STATE_EMPTY && !node->model_is_wrong;
+}
+
+static inline bool may_start(const laconic_node *node) {
+    return node->state == LACONIC_WIRE_STATE_READY && !node->model_is_wrong;
+}
+
 /* Bits of SELECT that ask for sensors, and those that this build leaves out: of `send`, and of the raw output. */
 #define SENDS_OF_SENSORS (LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER)
 #define RAW_OF_SENSORS (LACONIC_RAW_IMU | LACONIC_RAW_ENCODER)

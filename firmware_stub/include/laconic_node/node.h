@@ -76,6 +76,7 @@ typedef struct laconic_node {
     uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
     uint8_t send;  /* chosen frames: LACONIC_NODE_SEND_…                       */
     bool raw_fd;
+    bool model_is_wrong; /* integrity.c has found it: no order but COMMIT uses it    */
     uint8_t wheel_group; /* next WHEEL_SPEED group                                   */
 #if LACONIC_NODE_WITH_SENSORS
     uint8_t angle_group;   /* next WHEEL_ANGLE group                                  */
