@@ -300,6 +300,7 @@ static void sizes_of(laconic_error *sizes, laconic_error *floor, const state_err
     add_resolution(floor, plant);
     add_floor(sizes, floor);
     make_sizes(sizes);
+    make_sizes(floor);
 }
 
 /* Carries the error to the plant's moment, at which the window ends. */
@@ -375,6 +376,7 @@ static void read_friction(laconic_errors *errors, const laconic_estimate *estima
     add_resolution(floor, plant);
     add_floor(sizes, floor);
     make_sizes(sizes);
+    make_sizes(floor);
 #else
     (void)errors, (void)estimate, (void)plant;
 #endif
