@@ -14,7 +14,7 @@ function(laconic_library real)
     add_library(${target} ${ARGN})
     add_library(laconic::${name} ALIAS ${target})
     target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>"
-        "$<INSTALL_INTERFACE:include>" PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/src")
+        "$<INSTALL_INTERFACE:include>" PRIVATE ${core_folders} ${optional_folders})
     target_compile_definitions(${target} PUBLIC $<$<STREQUAL:${real},single>:LACONIC_SINGLE>)
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME ${file} LINKER_LANGUAGE C
         VERSION ${LACONIC_VERSION} SOVERSION ${LACONIC_ABI} WINDOWS_EXPORT_ALL_SYMBOLS ON
