@@ -69,7 +69,7 @@ def session(kind: str) -> bool:
 
 def frames(clock: Clock, seed: int) -> bool:
     """The matrix of faults of frames, with a new seed each time; once at least."""
-    from laconic.benchmark.fault_matrix import run_matrix
+    from laconic.tools.report.fault_matrix import run_matrix
 
     cases = injected = 0
     bad: list[str] = []
