@@ -9,34 +9,20 @@
 #define BIT(offset) ((uint32_t)1 << (offset))
 
 /* Numbers in a frame, little-endian. */
-/*@ requires \valid_read(data + (0 .. 1));
-    assigns \nothing; */
 static inline uint16_t word16(const uint8_t *data) { return (uint16_t)(data[0] | data[1] << 8); }
 
-/*@ requires \valid_read(data + (0 .. 3));
-    assigns \nothing; */
 static inline uint32_t word32(const uint8_t *data) { return word16(data) | (uint32_t)word16(data + 2) << 16; }
 
-/*@ requires \valid(to + (0 .. 1));
-    assigns to[0 .. 1];
-    ensures to[0] == (value & 255) && to[1] == (value >> 8 & 255); */
 static inline void put16(uint8_t *to, uint32_t value) {
     to[0] = (uint8_t)(value & 255U);
     to[1] = (uint8_t)(value >> 8 & 255U);
 }
 
-/*@ requires \valid(to + (0 .. 3));
-    assigns to[0 .. 3];
-    ensures to[0] == (value & 255) && to[1] == (value >> 8 & 255);
-    ensures to[2] == (value >> 16 & 255) && to[3] == ((value >> 16) >> 8 & 255); */
 static inline void put32(uint8_t *to, uint32_t value) {
     put16(to, value);
     put16(to + 2, value >> 16);
 }
 
-/*@ requires \valid(counter);
-    assigns *counter;
-    ensures *counter == (\old(*counter) < UINT16_MAX ? \old(*counter) + 1 : UINT16_MAX); */
 static inline void count(uint16_t *counter) { *counter = (uint16_t)(*counter + (*counter < UINT16_MAX)); }
 
 static inline bool plays_drives(const laconic_node *node) {

@@ -51,7 +51,6 @@ static void store(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_
     const int32_t each = numbers_of(raw->take, wheel_count);
     const int32_t total = raw->take & LACONIC_RAW_SAMPLED ? 3 * each : each;
     const int32_t sample = raw->position / each;
-    /*@ assert 0 <= sample <= 2; */
     laconic_real *to = slot_in(&input[sample], raw->take, wheel_count, raw->position % each);
     memcpy(to, raw->number, sizeof raw->number);
     raw->position++;
@@ -96,7 +95,6 @@ static laconic_real *collect_sensors(laconic_real *to, uint8_t send, int32_t whe
         for (int k = 0; k < 2; k++) *to++ = sensed->imu_acceleration_m_per_s2[k];
         *to++ = sensed->imu_yaw_rate_rad_per_s;
     }
-    /*@ loop unroll LACONIC_MAX_WHEELS; */
     for (int32_t i = 0; (send & LACONIC_RAW_ENCODER) && i < wheel_count; i++) *to++ = sensed->encoder_count[i];
     return to;
 }

@@ -3,8 +3,6 @@
 
 #include "laconic_node/crc.h"
 
-/*@ requires length >= 1 && \valid_read(data + (0 .. length - 1));
-    assigns \nothing; */
 static uint8_t p22_crc(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
     const uint8_t id = (uint8_t)ends.data_id;
     uint8_t crc = laconic_crc8((uint8_t)ends.start, data + 1, (size_t)length - 1U);
@@ -12,22 +10,15 @@ static uint8_t p22_crc(const uint8_t *data, uint8_t length, laconic_e2e_ends end
     return (uint8_t)(crc ^ LACONIC_CRC8_END);
 }
 
-/*@ requires length >= LACONIC_E2E_P22_HEADER && \valid(data + (0 .. length - 1));
-    assigns data[0 .. 1]; */
 void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, laconic_e2e_ends ends, uint8_t counter) {
     data[1] = (uint8_t)((data[1] & 0xF0U) | (counter & LACONIC_E2E_P22_COUNTER_MASK));
     data[0] = p22_crc(data, length, ends);
 }
 
-/*@ requires \valid_read(data + (0 .. length - 1));
-    assigns \nothing;
-    ensures length < LACONIC_E2E_P22_HEADER ==> !\result; */
 bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
     return length >= LACONIC_E2E_P22_HEADER && data[0] == p22_crc(data, length, ends);
 }
 
-/*@ requires length >= 2 && \valid_read(data + (0 .. length - 1));
-    assigns \nothing; */
 static uint16_t p05_crc(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
     const uint8_t id[2] = {(uint8_t)(ends.data_id & 255U), (uint8_t)(ends.data_id >> 8)};
     uint16_t crc = laconic_crc16(ends.start, data + 2, (size_t)length - 2U);
@@ -35,9 +26,6 @@ static uint16_t p05_crc(const uint8_t *data, uint8_t length, laconic_e2e_ends en
     return (uint16_t)(crc ^ LACONIC_CRC16_END);
 }
 
-/*@ requires length >= LACONIC_E2E_P05_HEADER && \valid(data + (0 .. length - 1));
-    assigns data[0 .. 2];
-    ensures data[2] == counter; */
 void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, laconic_e2e_ends ends, uint8_t counter) {
     data[2] = counter;
     const uint16_t crc = p05_crc(data, length, ends);
@@ -45,17 +33,10 @@ void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, laconic_e2e_ends end
     data[1] = (uint8_t)(crc >> 8);
 }
 
-/*@ requires \valid_read(data + (0 .. length - 1));
-    assigns \nothing;
-    ensures length < LACONIC_E2E_P05_HEADER ==> !\result; */
 bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
     return length >= LACONIC_E2E_P05_HEADER && (data[0] | (data[1] << 8)) == p05_crc(data, length, ends);
 }
 
-/*@ requires \valid(receiver);
-    assigns *receiver;
-    ensures receiver->known && receiver->counter == counter && receiver->stray_count == 0 && receiver->lost == lost;
-    ensures \result == (lost == 0 ? LACONIC_E2E_OK : LACONIC_E2E_OK_SOME_LOST); */
 static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t lost) {
     receiver->known = true;
     receiver->counter = counter;
@@ -65,14 +46,6 @@ static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter
 }
 
 /* The counter of a refused frame is kept apart from the reference, so that old frames cannot change the reference. */
-/*@ requires \valid(receiver);
-    requires receiver->stray_count < LACONIC_E2E_RESYNC;
-    assigns *receiver;
-    ensures receiver->stray_count < LACONIC_E2E_RESYNC;
-    ensures \result == LACONIC_E2E_WRONG_SEQUENCE || \result == LACONIC_E2E_OK;
-    ensures \result == LACONIC_E2E_OK ==> receiver->known && receiver->counter == counter;
-    ensures \result == LACONIC_E2E_WRONG_SEQUENCE ==>
-            receiver->counter == \old(receiver->counter) && receiver->known == \old(receiver->known); */
 static laconic_e2e_status stray(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t mask) {
     const bool follows = counter == ((receiver->stray + 1U) & mask);
     receiver->stray_count = (uint8_t)(follows ? receiver->stray_count + 1U : 1U);
@@ -82,15 +55,6 @@ static laconic_e2e_status stray(laconic_e2e_receiver *receiver, uint8_t counter,
 }
 
 /* A refused frame leaves the reference; an accepted one becomes it. */
-/*@ requires \valid(receiver);
-    requires receiver->stray_count < LACONIC_E2E_RESYNC;
-    assigns *receiver;
-    ensures receiver->stray_count < LACONIC_E2E_RESYNC;
-    ensures \result == LACONIC_E2E_ERROR <==> !crc_is_right;
-    ensures \result == LACONIC_E2E_ERROR || \result == LACONIC_E2E_REPEATED ==> *receiver == \old(*receiver);
-    ensures \result == LACONIC_E2E_WRONG_SEQUENCE ==> receiver->counter == \old(receiver->counter);
-    ensures \result == LACONIC_E2E_OK || \result == LACONIC_E2E_OK_SOME_LOST ==>
-            receiver->known && receiver->counter == counter; */
 laconic_e2e_status laconic_e2e_check(laconic_e2e_receiver *receiver, bool crc_is_right, uint8_t counter, uint8_t mask,
                                      uint8_t max_delta) {
     if (!crc_is_right) return LACONIC_E2E_ERROR;

@@ -4,10 +4,6 @@
 /* Lengths of frames by their DLC, which in classic CAN is the length. */
 static const uint8_t fd_lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
 
-/*@ requires dlc <= 15;
-    assigns \nothing;
-    ensures \result <= LACONIC_FRAME_BYTES;
-    ensures dlc <= 8 ==> \result == dlc; */
 static uint8_t length_of(uint32_t dlc) { return LACONIC_NODE_CAN_FD ? fd_lengths[dlc] : (uint8_t)dlc; }
 
 static uint32_t dlc_of(uint8_t length) {
@@ -16,8 +12,6 @@ static uint32_t dlc_of(uint8_t length) {
     return LACONIC_NODE_CAN_FD ? dlc : length;
 }
 
-/*@ assigns \nothing;
-    ensures -1 <= \result <= 15; */
 static int digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
@@ -26,26 +20,16 @@ static int digit(char c) {
 }
 
 /* Reads `count` hexadecimal digits; false iff one is none. */
-/*@ requires \valid_read(text + (0 .. count - 1)) && \valid(value) && \separated(value, text + (0 .. count - 1));
-    assigns *value;
-    ensures \result && count == 1 ==> *value <= 15; */
 static bool number(const char *text, size_t count, uint32_t *value) {
     *value = 0;
-    /*@ loop invariant 0 <= k <= count && (k == 0 ==> *value == 0) && (k == 1 ==> *value <= 15);
-        loop assigns k, *value;
-        loop variant count - k; */
     for (size_t k = 0; k < count; k++) {
         const int d = digit(text[k]);
         if (d < 0) return false;
         *value = (*value << 4) | (uint32_t)d;
-        /*@ assert k == 0 ==> *value <= 15; */
     }
     return true;
 }
 
-/*@ requires \valid(slcan);
-    assigns *slcan;
-    ensures slcan->length == 0 && !slcan->open && !slcan->rate_is_wrong; */
 void laconic_slcan_init(laconic_slcan *slcan, char required_rate) {
     slcan->open = false;
     slcan->listen_only = false;
@@ -56,8 +40,6 @@ void laconic_slcan_init(laconic_slcan *slcan, char required_rate) {
 }
 
 /* Capital letters are for 29-bit identifiers. */
-/*@ requires \valid(frame);
-    assigns frame->extended, frame->remote, frame->bit_rate_switch, frame->fd; */
 static bool kind_of(char letter, laconic_frame *frame) {
     const char kind = (char)(letter | ' ');
     frame->extended = kind != letter;
@@ -68,11 +50,6 @@ static bool kind_of(char letter, laconic_frame *frame) {
 }
 
 /* The line must have exactly the length that its DLC states. */
-/*@ requires 1 <= length < LACONIC_SLCAN_LINE && \valid_read(line + (0 .. length - 1)) && \valid(frame);
-    requires \separated(frame, line + (0 .. length - 1));
-    assigns *frame;
-    ensures !\result ==> *frame == \old(*frame);
-    ensures \result ==> frame->length <= LACONIC_FRAME_BYTES; */
 static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
     laconic_frame read = {0};
     uint32_t dlc;
@@ -86,9 +63,6 @@ static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
     read.length = length_of(dlc);
     const size_t header = 1U + id_digits + 1U;
     if (length != header + (read.remote ? 0U : 2U * (size_t)read.length)) return false;
-    /*@ loop invariant 0 <= k <= read.length;
-        loop assigns k, byte, read.data[0 .. LACONIC_FRAME_BYTES - 1];
-        loop variant read.length - k; */
     for (size_t k = 0; !read.remote && k < read.length; k++) {
         if (!number(line + header + 2U * k, 2, &byte)) return false;
         read.data[k] = (uint8_t)byte;

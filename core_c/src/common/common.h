@@ -93,8 +93,6 @@ static inline real magnitude(real x) {
 static inline real cut(real x, real limit) { return x > limit ? limit : (x < -limit ? -limit : x); }
 #endif
 
-/*@ assigns \nothing;
-    ensures \result <==> \is_finite(x); */
 static inline verdict is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
 /* Beyond it neighbouring angles differ by more than the smallest angle that counts, so the direction is not known. */
@@ -117,9 +115,6 @@ static inline laconic_sum sum_of(real value) {
 }
 
 /* Fills `why`, which may be NULL, and returns the status: a refusal is one line in its caller. */
-/*@ requires why == \null || \valid(why);
-    assigns *why;
-    ensures \result == status; */
 static inline laconic_status refuse(laconic_refusal *why, laconic_status status, laconic_field field, int32_t item,
                                     real value, real limit) {
     if (why != NULL) {

@@ -99,12 +99,6 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
 
 /* The comparison is in units of the step, not of the interval, so that long intervals are held to the same
  * tolerance. */
-/*@ requires \valid(steps) && (why == \null || \valid(why)) && \separated(steps, why);
-    assigns *steps, *why;
-    ensures \result == LACONIC_OK || \result == LACONIC_STEP_DOES_NOT_FIT || \result == LACONIC_NOT_FINITE ||
-            \result == LACONIC_NOT_POSITIVE;
-    ensures \result != LACONIC_OK ==> *steps == \old(*steps);
-    ensures \result == LACONIC_OK ==> *steps >= 1; */
 laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why) {
     const double ratio = interval_s / step_s;
     if (!(interval_s <= DBL_MAX) || !(interval_s > 0.0))

@@ -60,29 +60,12 @@ laconic_status laconic_step_sampled(const laconic_model *model, const laconic_in
     return take_step(model, integrator, state, &samples);
 }
 
-/*@ requires count >= 0 && \valid_read(numbers + (0 .. count - 1)) && (why == \null || \valid(why));
-    requires \separated(why, numbers + (0 .. count - 1));
-    assigns *why;
-    ensures \result == LACONIC_OK ==> \forall integer i; 0 <= i < count ==> \is_finite(numbers[i]); */
 static laconic_status check_many(const real *numbers, int32_t count, laconic_field field, laconic_refusal *why) {
-    /*@ loop invariant 0 <= i <= count && \forall integer k; 0 <= k < i ==> \is_finite(numbers[k]);
-        loop assigns i;
-        loop variant count - i; */
     for (int32_t i = 0; i < count; i++)
         if (!is_finite(numbers[i])) return refuse(why, LACONIC_NOT_FINITE, field, i + 1, numbers[i], R(0));
     return LACONIC_OK;
 }
 
-/*@ requires \valid_read(model) && \valid_read(input) && (why == \null || \valid(why));
-    requires 0 <= model->wheel_count <= LACONIC_MAX_WHEELS && \separated(why, model, input);
-    assigns *why;
-    ensures \result == LACONIC_OK ==>
-            (\forall integer i; 0 <= i < model->wheel_count ==>
-             \is_finite(input->voltage_V[i]) && \is_finite(input->axle_torque_Nm[i]));
-    ensures \result == LACONIC_OK ==>
-            (\forall integer i; 0 <= i < 2 ==> \is_finite(input->body_force_N[i]) &&
-             \is_finite(input->world_force_N[i]) && \is_finite(input->world_force_point_m[i])) &&
-            \is_finite(input->body_moment_Nm); */
 laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why) {
     const int32_t n = model->wheel_count;
     laconic_status status = check_many(input->voltage_V, n, LACONIC_FIELD_VOLTAGE, why);

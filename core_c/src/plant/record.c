@@ -75,21 +75,10 @@ static laconic_status run_held(laconic_plant *plant, const laconic_input *input,
 }
 
 /* The stretch that a step of the schedule lies in: the first that ends after it. */
-/*@ requires \valid_read(schedule) && \valid_read(schedule->until_step + (0 .. schedule->count - 1));
-    assigns \nothing;
-    ensures \result <= schedule->count;
-    ensures \result > 0 ==> schedule->until_step[\result - 1] <= step;
-    ensures \result < schedule->count ==> schedule->until_step[\result] > step; */
 static uint64_t stretch_at(const laconic_schedule *schedule, uint64_t step) {
     uint64_t low = 0, high = schedule->count;
-    /*@ loop invariant low <= high <= schedule->count;
-        loop invariant low > 0 ==> schedule->until_step[low - 1] <= step;
-        loop invariant high < schedule->count ==> schedule->until_step[high] > step;
-        loop assigns low, high;
-        loop variant high - low; */
     while (low < high) {
         const uint64_t middle = low + (high - low) / 2;
-        /*@ assert middle < schedule->count; */
         if (schedule->until_step[middle] <= step)
             low = middle + 1;
         else

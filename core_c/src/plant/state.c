@@ -1,14 +1,7 @@
 /* Start values, or the numbers of an outer integrator → state; a motion carried over to a changed vehicle. */
 #include "step_internals.h"
 
-/*@ requires \valid_read(start) && (why == \null || \valid(why)) && \separated(start, why);
-    assigns *why;
-    ensures \result == LACONIC_OK ==> (\forall integer k; 0 <= k < 3 ==> \is_finite(start->nu_rad_per_s[k])) &&
-            \is_finite(start->x_m) && \is_finite(start->y_m) && \is_finite(start->heading_rad); */
 static laconic_status check_start(const laconic_start *start, laconic_refusal *why) {
-    /*@ loop invariant 0 <= k <= 3 && \forall integer i; 0 <= i < k ==> \is_finite(start->nu_rad_per_s[i]);
-        loop assigns k;
-        loop variant 3 - k; */
     for (int32_t k = 0; k < 3; k++)
         if (!is_finite(start->nu_rad_per_s[k]))
             return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, k + 1, start->nu_rad_per_s[k], R(0));
@@ -22,24 +15,15 @@ static laconic_status check_start(const laconic_start *start, laconic_refusal *w
     return LACONIC_OK;
 }
 
-/*@ requires \valid_read(state);
-    assigns \nothing;
-    ensures \result ==> \is_finite(state->zeta[0].value) && \is_finite(state->zeta[1].value) &&
-            \is_finite(state->zeta[2].value); */
 static bool moves_in_range(const laconic_state *state) {
     return square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
 
-/*@ requires why == \null || \valid(why);
-    assigns *why; */
 static laconic_status check_allowed(const laconic_model *m, const laconic_state *state, const real nu[3],
                                     laconic_refusal *why) {
     real nearest[3], worst = R(0);
     int32_t item = 0;
     laconic_nu(m, state, nearest);
-    /*@ loop invariant 0 <= k <= 3 && 0 <= item < 3;
-        loop assigns k, item, worst;
-        loop variant 3 - k; */
     for (int32_t k = 0; k < 3; k++)
         if (magnitude(nu[k] - nearest[k]) > worst) {
             worst = magnitude(nu[k] - nearest[k]);
@@ -52,9 +36,6 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
 }
 
 /* The state of a start; what a refusal leaves in `fresh` is not used. */
-/*@ requires \valid(fresh) && \valid_read(model) && \valid_read(start) && (why == \null || \valid(why));
-    requires \separated(fresh, model, start, why);
-    assigns *fresh, *why; */
 static laconic_status find_state(laconic_state *fresh, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why) {
     const laconic_state still = ALL_ZERO;
@@ -72,10 +53,6 @@ static laconic_status find_state(laconic_state *fresh, const laconic_model *mode
     return LACONIC_OK;
 }
 
-/*@ requires \valid(state) && \valid_read(model) && \valid_read(start) && (why == \null || \valid(why));
-    requires \separated(state, model, start, why);
-    assigns *state, *why;
-    ensures \result != LACONIC_OK ==> *state == \old(*state); */
 laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why) {
     laconic_state fresh;

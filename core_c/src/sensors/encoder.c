@@ -19,26 +19,17 @@ bool laconic_encoder_turn(laconic_encoder *encoder, const laconic_encoder_settin
     return true;
 }
 
-/*@ requires \valid_read(encoder) && counts_per_turn >= 1;
-    assigns \nothing;
-    ensures 0 <= \result < counts_per_turn; */
 int32_t laconic_encoder_place(const laconic_encoder *encoder, int32_t counts_per_turn) {
     const int32_t within = (int32_t)(encoder->count % counts_per_turn); /* the sign of the count */
     return within < 0 ? within + counts_per_turn : within;
 }
 
-/*@ requires \valid_read(encoder) && counts_per_turn >= 1 && encoder->count >= INT64_MIN + counts_per_turn;
-    assigns \nothing;
-    ensures encoder->count >= 0 ==> 0 <= \result <= encoder->count; */
 int64_t laconic_encoder_turns(const laconic_encoder *encoder, int32_t counts_per_turn) {
     return (encoder->count - laconic_encoder_place(encoder, counts_per_turn)) / counts_per_turn;
 }
 
 /* Of the lower 32 bits, those from 2^31 on stand for numbers below 0: written out, as C leaves the conversion of such a
  * number to the compiler. */
-/*@ requires \valid_read(encoder) && wrap >= 0;
-    assigns \nothing;
-    ensures wrap > 0 ==> 0 <= \result < wrap; */
 int32_t laconic_encoder_shown(const laconic_encoder *encoder, int32_t wrap) {
     const uint32_t bits = (uint32_t)encoder->count;
     if (wrap > 0) return laconic_encoder_place(encoder, wrap);

@@ -3,7 +3,6 @@
 #include "vector.h"
 
 static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehicle *vehicle) {
-    /*@ loop unroll LACONIC_MAX_WHEELS; */
     for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         laconic_wheel_row(x->wheel_rows[i], b, &vehicle->wheel[i]);
         x->constraint_count += laconic_constraint_rows(x->constraint_rows + x->constraint_count, b, &vehicle->wheel[i]);

@@ -2,7 +2,7 @@
 #ifndef INTEGRITY_BENCH_H
 #define INTEGRITY_BENCH_H
 
-#include "../campaign/rig.h"
+#include "rig.h"
 
 #include "unity.h"
 

@@ -13,7 +13,6 @@ BUILT = "laconic/_built"
 PACKAGES = {"laconic": "python/laconic", "laconic_fmu": "python/laconic_fmu"}
 READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
                     "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc")
-READ_FOR_A_GPU = ("core_c/optional/batch", "core_c/include/laconic", "core_c/src")
 GIVEN_OUT = ("core_c/optional/soft_double",)  # by `laconic core`
 CORE = ("amalgamation/laconic.h", "amalgamation/laconic.c")
 REALS = ("double", "single")
@@ -33,9 +32,9 @@ def python_files(project: Path) -> dict[str, Path]:
 
 
 def project_files(project: Path) -> dict[str, Path]:
-    """Scenes and contracts, and the core's text, which a GPU's compiler reads, and what else is given out."""
+    """Scenes and contracts, and what is given out."""
     paths = [*(project / name for name in READ_BY_COMMANDS), *(project / "scenes").glob("*.toml"),
-             *(path for folder in (*READ_FOR_A_GPU, *GIVEN_OUT) for path in (project / folder).glob("*.*"))]
+             *(path for folder in GIVEN_OUT for path in (project / folder).glob("*.*"))]
     return {f"{BUILT}/sources/{path.relative_to(project).as_posix()}": path for path in paths}
 
 

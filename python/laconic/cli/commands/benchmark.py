@@ -21,20 +21,20 @@ COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousan
            "instructions": "instructions", "other_key": "with another key"}
 TITLES = {"step": "A step of rk4 on one core", "batch": "Vehicle-steps on one core",
           "learn": "Environments under random actions, on one core",
-          "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single", "gpu": "Vehicle-steps on a GPU",
+          "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single",
           "soft-double": "Double precision on a Cortex-M4F, in instructions and bytes",
           "codes": "Codes that only a key's holder can make, on a Cortex-M4F"}
 
 
 @click.command("benchmark")
 @click.argument("what", metavar="WHAT", type=click.Choice([*TITLES]))
-@click.option("--lanes", type=click.IntRange(1, 10**7), help="Vehicles side by side; else 1,000, on a GPU 1,000,000.")
+@click.option("--lanes", type=click.IntRange(1, 10**7), default=1000, show_default=True, help="Vehicles side by side.")
 @click.option("--rounds", type=click.IntRange(1, 1000), default=15, show_default=True,
               help="How often all run in turn; the least time of each counts.")
 @json_flag()
-def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> None:
-    """Times vehicles that step side by side, or counts instructions: WHAT is step, batch, learn, gpu, filter,
-    soft-double or codes.
+def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
+    """Times vehicles that step side by side, or counts instructions: WHAT is step, batch, learn, filter, soft-double
+    or codes.
 
     step: scene s1 by rk4, with the whole core, with the core trimmed to the scene, and by a kernel written by hand for
     this one vehicle, with the core's refusals and without any; all have the same bits.
@@ -45,8 +45,6 @@ def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> Non
 
     learn: the environment laconic/DriveToPose-v0 under random actions, in one batch, with vehicles that differ, and as
     Gymnasium's vector of single ones.
-
-    gpu: the batch of Robotino 2 on a GPU of NVIDIA's, each lane first compared with the processor's bits.
 
     filter: the Kalman filter with recorded readings on an emulated Cortex-M4F, prediction and readings apart, with its
     stack, its flash and RAM, and whether it has this machine's bits.
@@ -60,9 +58,7 @@ def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> Non
     from laconic.tools.report.many.race import stay_on_one_core
 
     stay_on_one_core()
-    lanes = lanes or (10**6 if what == "gpu" else 1000)
-    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "gpu": _gpu, "filter": _filter,
-                   "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
+    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "filter": _filter, "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
         return
@@ -95,13 +91,6 @@ def _learn(lanes: int, rounds: int) -> Found:
     from laconic.tools.learn import rate
 
     return rate.rows(lanes, rounds), []
-
-
-def _gpu(lanes: int, rounds: int) -> Found:
-    from laconic.gpu import rate
-
-    name, rows = rate.rows(lanes, rounds)
-    return rows, [f"device: {name}, {lanes:,} vehicles", rate.PUBLIC]
 
 
 def _soft_double(lanes: int, rounds: int) -> Found:

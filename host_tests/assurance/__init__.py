@@ -1,0 +1,1 @@
+"""How far the project is checked beyond its tests; `build/venv/bin/python host_tests/assurance` lists the parts."""
