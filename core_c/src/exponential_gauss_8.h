@@ -9,9 +9,12 @@
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
-/* At most; they end when one changes nothing, after 4 to 9 in usual steps. 8 have the order; as many as here find the
- * solution of the collocation up to h·|w||g·ζ| = 1.5, so that free motion keeps its energy to rounding. */
+/* The rounds end when one changes nothing, after 4 to 9 in usual steps, and after ROUNDS if they then move the numbers
+ * by rounding alone. 8 have the order; ROUNDS find the solution of the collocation up to h·|w||g·ζ| = 1.5. A step whose
+ * solution MOST_ROUNDS do not find is refused: it would not keep the energy of free motion. */
 #define ROUNDS 32
+#define MOST_ROUNDS 128
+#define SETTLED (R(8) * LACONIC_EPSILON) /* largest move of a round, of Σ|ζ| at the nodes */
 
 /* ------------------------------------------------------------------ weights of a panel -- */
 
@@ -108,6 +111,21 @@ static inline void double_phis(real phi[PHIS * (NODES + 1)]) {
 typedef struct node_vectors {
     real x[NODES], y[NODES], z[NODES];
 } node_vectors;
+
+/* Σ|ζ − other| at the nodes. */
+INLINE real distance_of_nodes(const node_vectors *zeta, const node_vectors *other) {
+    real sum = R(0);
+    for (int j = 0; j < NODES; j++)
+        sum += magnitude(zeta->x[j] - other->x[j]) + magnitude(zeta->y[j] - other->y[j]) +
+               magnitude(zeta->z[j] - other->z[j]);
+    return sum;
+}
+
+/* Whether a round that moved ζ at the nodes so far ended at the solution. False for NaN. */
+static inline verdict nodes_settled(const node_vectors *zeta, real move) {
+    static const node_vectors zero;
+    return move <= SETTLED * distance_of_nodes(zeta, &zero);
+}
 
 /* F at each node, b where it is constant being part of `still`. */
 INLINE void rates_at(node_vectors *rate, const laconic_model *m, const node_vectors *zeta, vector still) {

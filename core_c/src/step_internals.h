@@ -193,6 +193,34 @@ INLINE verdict passive(const laconic_model *model, const laconic_state *state, r
     return OR_ELSE(driven, laconic_growth_is_forced(model, state, step_s, samples, &copy));
 }
 
+/* Of |ζ|²: as much as roundings add in a step at most. In double 10⁵ steps of it are 4e-10. */
+#define ENERGY_ROUNDING (R(16) * LACONIC_EPSILON)
+
+/* Decides as `keeps_energy`, with b as it varies over the step, and cuts the increment where that is needed. */
+bool laconic_energy_kept(const laconic_model *model, const laconic_state *state, real step_s,
+                         const laconic_forcing_samples *samples, increment *by);
+
+INLINE bool energy_kept(const laconic_model *model, const laconic_state *state, real step_s,
+                        const laconic_forcing_samples *samples, increment *by) {
+    increment copy = *by; /* by itself has no address and stays in registers */
+    const bool kept = laconic_energy_kept(model, state, step_s, samples, &copy);
+    by->delta = copy.delta;
+    return kept;
+}
+
+/* Decides as `passive`, for methods whose steps must not add up to a gain over a run: what a step gains beyond rounding
+ * and beyond what the forcing can supply is cut from the increment. */
+INLINE verdict keeps_energy(const laconic_model *model, const laconic_state *state, real step_s,
+                            const laconic_forcing_samples *samples, vector zeta, increment *by) {
+    const real before = square(zeta), after = square(plus(zeta, by->delta));
+    const verdict calm = after <= (R(1) + ENERGY_ROUNDING) * before;
+    if (ALL(calm)) return KNOWN(true, calm);
+    const real supplied = R(2) * step_s * dot(vec(samples->start->constant), by->mean);
+    const verdict driven = OR_ELSE(calm, after - before <= supplied + ENERGY_TOLERANCE * magnitude(supplied));
+    const bool kept = ALL(driven) || !ALONE || energy_kept(model, state, step_s, samples, by);
+    return kept ? KNOWN(true, driven) : KNOWN(false, driven);
+}
+
 /* The status of a step that is not passive. */
 static inline laconic_status not_passive(increment by) {
     return ALL(is_finite(size(by.delta))) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
@@ -295,6 +323,13 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
 INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                          const laconic_forcing_samples *samples, vector zeta, increment by) {
     if (!USUALLY(passive(model, state, step_s, samples, zeta, by), &by.mean.x)) return not_passive(by);
+    return advance(state, model, step_s, zeta, by);
+}
+
+/* The same for methods whose steps must not add up to a gain over a run. */
+INLINE laconic_status advance_with_energy(laconic_state *state, const laconic_model *model, real step_s,
+                                          const laconic_forcing_samples *samples, vector zeta, increment by) {
+    if (!USUALLY(keeps_energy(model, state, step_s, samples, zeta, &by), &by.mean.x)) return not_passive(by);
     return advance(state, model, step_s, zeta, by);
 }
 
