@@ -80,7 +80,7 @@ static void trace_rounds(panel_trace *t, const step_point *at) {
     real move = R(1);
     int round = 0;
     begin_rounds(t);
-    while (round < MOST_ROUNDS && move != R(0) && (round < ROUNDS || !nodes_settled(&t->zeta, move))) {
+    while (round < MOST_ROUNDS && move != R(0) && (round < ROUNDS || !nodes_settled(&t->zeta, move, SETTLED))) {
         const node_vectors before = t->zeta;
         trace_rates(t, at);
         answer(&t->zeta, t->start, t->row, &t->of.rate);
@@ -335,8 +335,8 @@ static const panel_model *model_change_of(panel_model *room, const panel_trace *
     return room;
 }
 
-static void respond_in_panel(step_response out[], const panel_trace *t, const step_point *at,
-                             const step_direction in[], int32_t count) {
+static void respond_in_panel(step_response out[], const panel_trace *t, const step_point *at, const step_direction in[],
+                             int32_t count) {
     panel_model room;
     for (int32_t k = 0; k < count; k++) {
         const step_response own =

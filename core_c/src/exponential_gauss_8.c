@@ -126,19 +126,19 @@ INLINE real moved_by_answer(node_vectors *zeta, vector start, const panel *p, co
     return distance_of_nodes(zeta, &before);
 }
 
-/* The rounds after the first ROUNDS, for one vehicle: where these still move the numbers by more than rounding, further
- * ones may find the solution. Returns whether it has been found; without it the step would gain or lose energy. */
+/* Takes the rounds after the first ROUNDS, for one vehicle. Returns whether they found the solution. */
 RARE verdict take_more_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
                               vector start, real yaw_before, real last_move) {
     const vector still = minus(p->constant, damping(m, start));
     real move = last_move;
-    for (int round = ROUNDS; ALONE && round < MOST_ROUNDS; round++) {
-        if (!ALL(is_finite(move)) || ALL(nodes_settled(zeta, move))) break;
+    if (!ALONE) return nodes_settled(zeta, move, SETTLED);
+    for (int round = ROUNDS; round < MOST_ROUNDS; round++) {
+        if (!ALL(is_finite(move)) || ALL(nodes_settled(zeta, move, SETTLED))) break;
         rates_at(rate, m, zeta, still);
         if (p->varying != NULL) add_varying_forcing(rate, m, p, zeta, yaw_before);
         move = moved_by_answer(zeta, start, p, rate);
     }
-    return nodes_settled(zeta, move);
+    return nodes_settled(zeta, move, SETTLED_AT_LAST);
 }
 
 /* Finds ζ and F at the nodes, by rounds from F at the start on. Returns whether they are the solution. */
@@ -255,7 +255,7 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     if (!USUALLY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &found.moved.along_m))
         return not_passive(by);
     if (!USUALLY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
-    return END_STEP(state, by.delta, scaled(integrator->step_s, by.mean), found.moved);
+    return end_levelled(state, model, integrator->step_s, samples, zeta, by, found.moved);
 }
 
 /* ------------------------------------------------------------------------------ preparation -- */

@@ -9,12 +9,14 @@
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
-/* The rounds end when one changes nothing, after 4 to 9 in usual steps, and after ROUNDS if they then move the numbers
- * by rounding alone. 8 have the order; ROUNDS find the solution of the collocation up to h·|w||g·ζ| = 1.5. A step whose
- * solution MOST_ROUNDS do not find is refused: it would not keep the energy of free motion. */
+/* The rounds end when one changes nothing, after 4 to 9 in usual steps, and from ROUNDS on when one moves ζ at the nodes
+ * by rounding alone. 8 have the order; ROUNDS find the solution of the collocation up to h·|w||g·ζ| = 1.5. A step for
+ * which MOST_ROUNDS do not find it is refused: free motion would not keep its energy. Where they hardly converge, they
+ * end in moves that are larger than a rounding. */
 #define ROUNDS 32
 #define MOST_ROUNDS 128
-#define SETTLED (R(8) * LACONIC_EPSILON) /* largest move of a round, of Σ|ζ| at the nodes */
+#define SETTLED (R(8) * LACONIC_EPSILON)           /* move of a round over Σ|ζ| */
+#define SETTLED_AT_LAST (R(256) * LACONIC_EPSILON) /* after MOST_ROUNDS */
 
 /* ------------------------------------------------------------------ weights of a panel -- */
 
@@ -122,9 +124,9 @@ INLINE real distance_of_nodes(const node_vectors *zeta, const node_vectors *othe
 }
 
 /* Whether a round that moved ζ at the nodes so far ended at the solution. False for NaN. */
-static inline verdict nodes_settled(const node_vectors *zeta, real move) {
+static inline verdict nodes_settled(const node_vectors *zeta, real move, real tolerance) {
     static const node_vectors zero;
-    return move <= SETTLED * distance_of_nodes(zeta, &zero);
+    return move <= tolerance * distance_of_nodes(zeta, &zero);
 }
 
 /* F at each node, b where it is constant being part of `still`. */

@@ -43,6 +43,12 @@ verdict laconic_growth_is_forced(const laconic_model *model, const laconic_state
 }
 
 #ifndef LACONIC_LANES
+#ifdef LACONIC_SINGLE
+#define HALF_OF_DIGITS R(4096)
+#else
+#define HALF_OF_DIGITS R(134217728)
+#endif
+
 /* ζ but for its part along w, which free motion keeps. */
 static vector across_gyro(const laconic_model *model, vector zeta) {
     const vector w = vec(model->gyro);
@@ -69,5 +75,56 @@ bool laconic_energy_kept(const laconic_model *model, const laconic_state *state,
     if (!(excess <= ENERGY_TOLERANCE * (R(2) * before + gain))) return false;
     if (excess <= ENERGY_ROUNDING * before + R(0.0625) * reach) return true;
     return cut_back(model, zeta, gain - R(2) * step_s * dot(b.start, by->mean), by);
+}
+
+/* Adds to a sum what the addition loses, too, whatever the sizes: value + rest stays exact but for the rest's own
+ * rounding (Knuth's two-sum). */
+static void add_exactly(laconic_sum *sum, real addend) {
+    const real value = sum->value + addend, part = value - sum->value;
+    sum->rest += (sum->value - (value - part)) + (addend - part);
+    sum->value = value;
+}
+
+/* Adds sign · x², all digits of it: x is split into halves whose products are exact (Veltkamp, Dekker). */
+static void add_square(laconic_sum *sum, real sign, real x) {
+    const real wide = (R(1) + HALF_OF_DIGITS) * x, high = wide - (wide - x), low = x - high, product = x * x;
+    add_exactly(sum, sign * product);
+    sum->rest += sign * (((high * high - product) + R(2) * (high * low)) + low * low);
+}
+
+/* |ζ|² now less |ζ|² before, of sums with what they carry, to far less than a rounding of |ζ|². */
+static real square_gained(const laconic_sum now[3], const laconic_sum before[3]) {
+    laconic_sum gained = {R(0), R(0)};
+    for (int k = 0; k < 3; k++) {
+        add_square(&gained, R(1), now[k].value);
+        add_square(&gained, R(-1), before[k].value);
+        gained.rest += R(2) * (now[k].value * now[k].rest - before[k].value * before[k].rest);
+    }
+    return gained.value + gained.rest;
+}
+
+/* What damping takes at least: the mean of a square is no less than the square of the mean. */
+static real square_lost(const laconic_model *model, real step_s, vector mean) {
+    return R(2) * step_s * dot(mean, damping(model, mean));
+}
+
+/* The sums carry what is less than a rounding of them. What is beyond roundings is not of the roundings: then a gain
+ * alone is taken back. */
+static void level(laconic_sum zeta[3], const laconic_model *model, real gained, real lost) {
+    const vector now = {zeta[0].value, zeta[1].value, zeta[2].value}, across = across_gyro(model, now);
+    const real rounding = ENERGY_ROUNDING * square(now);
+    real surplus = gained + lost;
+    if (surplus > rounding) surplus = gained > R(0) ? gained : R(0);
+    if (surplus < -rounding || !(magnitude(surplus) <= R(0.25) * square(across))) return;
+    add_to_sums(zeta, scaled(R(-0.5) * surplus / square(across), across));
+}
+
+laconic_status laconic_accept_levelled(laconic_state *state, const laconic_model *model, real step_s,
+                                       const increment *by, const pose_change *moved) {
+    const laconic_sum before[3] = {state->zeta[0], state->zeta[1], state->zeta[2]};
+    const laconic_status status = accept_step(state, by->delta, scaled(step_s, by->mean), *moved);
+    if (status == LACONIC_OK)
+        level(state->zeta, model, square_gained(state->zeta, before), square_lost(model, step_s, by->mean));
+    return status;
 }
 #endif
