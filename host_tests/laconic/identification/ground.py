@@ -24,6 +24,7 @@ from laconic.identification.rolling_evidence import (
 )
 from laconic.logs import Log
 from laconic.recorded_runs.held_wheels import Held, hold
+from laconic.recorded_runs.placing import fitted_to, start_of
 from laconic.recorded_runs.steady_currents import axles_of, steady_parts
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -128,7 +129,7 @@ class GroundEvidence(RollingEvidence):
             if axles is not None and log.current_A is not None:
                 load, speed, current = steady_parts(log, held)
                 off = (axles.current_A(load, speed) - current) / max(float(np.abs(current).mean()), 0.1)
-            found.append((held.at(log.time_s, log.needs("pose", "identify")[0]), off))
+            found.append((fitted_to(log, held.at(log.time_s, start_of(log))), off))
         return found
 
     def _held(self, vehicle: Vehicle, log: Log) -> Held:

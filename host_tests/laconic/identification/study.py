@@ -14,6 +14,7 @@ from laconic.identification.solve import Fit, fit
 from laconic.identification.words import in_words
 from laconic.identification.words_of_errors import of_errors
 from laconic.logs import Log
+from laconic.logs.log import remarks_of
 from laconic.logs.read import for_wheels
 from laconic.recorded_runs.measures import RunErrors
 from laconic.recorded_runs.predicted import predict
@@ -56,7 +57,7 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
                   errors_of(fitted, runs, parameters), left, errors_of(fitted, others, parameters) if others else [],
                   errors_of(scene, others, parameters) if others else [], controller,
                   MEASURE[kind_of(runs, parameters)])
-    return replace(study, words=[*study.words, *of_errors(study, others)])
+    return replace(study, words=[*remarks_of([*runs, *others]), *study.words, *of_errors(study, others)])
 
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:
