@@ -22,7 +22,7 @@ from laconic.logs.can_frames import (
 
 ERROR_FLAG, REMOTE_FLAG = 0x20000000, 0x40000000
 BIT_RATE_SWITCH = 1
-LINE = re.compile(r"\s*\((\d+(?:\.\d+)?)\)\s+(\S+)\s+(.*?)\s*")
+LINE = re.compile(r"\s*\((\d+(?:\.\d+)?)\)\s+(\S+)(?:\s+(.*?))?\s*")
 COMPACT = re.compile(r"([0-9A-Fa-f]+)(##?)(\S*)(?:\s+([RT]))?")
 PRINTED = re.compile(r"(?:([RT]X)\s+\S+\s+)?([0-9A-Fa-f]+)\s+\[(\d+)\]\s*(.*)")
 MOST_CLASSIC, MOST_FD = 8, 64
@@ -32,7 +32,7 @@ def is_candump(beginning: str) -> bool:
     """Whether a text begins as a log of candump does."""
     first = next((line for line in beginning.splitlines() if line.strip()), "")
     found = LINE.fullmatch(first)
-    return bool(found and (COMPACT.match(found[3]) or PRINTED.match(found[3])))
+    return bool(found and (COMPACT.match(found[3] or "") or PRINTED.match(found[3] or "")))
 
 
 def read_candump(path: Path) -> Recorded:
@@ -47,7 +47,7 @@ def frame_of(number: int, line: str) -> LoggedFrame | None:
     found = LINE.fullmatch(line)
     if found is None:
         fail(number, "begins with no time such as (1764329083.000000); record with candump -l")
-    time_s, channel, frame = float(found[1]), found[2], found[3]
+    time_s, channel, frame = float(found[1]), found[2], found[3] or ""
     if compact := COMPACT.fullmatch(frame):
         return _compact(number, time_s, channel, compact)
     printed = PRINTED.fullmatch(frame)

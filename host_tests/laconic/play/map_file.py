@@ -18,6 +18,7 @@ AT_TIMEOUT = ("hold", "zero", "off", "end")
 REMOTE = "remote"
 PAGES = ("in turn", "together")
 MOST_VALUES = 2**64  # of a signal
+EXACT = 2.0**53      # a decimal beyond may have lost digits already
 
 
 @dataclass(frozen=True)
@@ -198,7 +199,8 @@ def _constant(table: Table) -> int | float | None:
     """As it is written: a signal may have more bits than a floating-point number."""
     given: Any = table.value("value", None, (int, float), "a number")
     table.number("value", None)  # refuses one that is not finite
-    return None if given is None else int(given) if float(given).is_integer() else float(given)
+    is_whole = isinstance(given, int) or (given is not None and given.is_integer() and abs(given) < EXACT)
+    return int(given) if is_whole else given
 
 
 def _conversion(table: Table, model: str) -> Conversion:

@@ -12,7 +12,7 @@ from cantools.database.can.signal import Signal
 
 from laconic.play.checksums import COUNTS_TO_14, E2E_COUNTERS, E2E_WIDTHS, SUMS
 from laconic.play.map_dbc import DbcMessage, Page, bit_range, byte_slice, exact, exact_raw, raw_range, start_value
-from laconic.play.map_file import Conversion, Joint, MessageMap, Received, Sent
+from laconic.play.map_file import EXACT, Conversion, Joint, MessageMap, Received, Sent
 from laconic.play.map_signals import OF_ANGLE
 
 TURN_RAD = 2.0 * math.pi
@@ -211,6 +211,9 @@ class Sender(Protected):
     def _check_constant(self, joint: Joint, value: int | float) -> None:
         """BadInput for a constant that its signal cannot hold as it is written."""
         signal = self.message.signals[joint.signal]
+        if isinstance(value, float) and abs(value) >= EXACT and not signal.is_float:
+            self.message.fail("value", f"has {value:.17g} as a decimal for {joint.signal}, which may have lost digits; "
+                              "write it as a whole number, without a point", joint.where)
         if self.raw_of(joint, value) is None:
             self.message.fail("value", f"cannot hold {value} in {joint.signal}; give a value of its range", joint.where)
         near = nearest_constants(signal, value)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.core.encoders import signed
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors, values_of
 from laconic.errors import BadInput
@@ -109,4 +110,5 @@ def raw_row(sensors: Sensors, held: Any) -> np.ndarray:
     """The numbers of raw_imu and raw_encoder, in their order, after a step with this input."""
     shown = sensors.read(held)
     return np.concatenate([shown.acceleration_body_m_per_s2, shown.imu_acceleration_m_per_s2,
-                           [shown.imu_yaw_rate_rad_per_s], shown.encoder_count]).astype(sensors.plant.core.dtype)
+                           [shown.imu_yaw_rate_rad_per_s], signed(shown.encoder_count)]).astype(
+                               sensors.plant.core.dtype)
