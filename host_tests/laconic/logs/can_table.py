@@ -86,7 +86,7 @@ def signal_names(columns: ColumnMap, quantity: Quantity, database: Dbc) -> list[
         there = [each for each in dict.fromkeys(numbered) if each in known]
         if not there:
             raise BadInput(f"{columns.path}: {quantity.name}.columns: {name} has no signal {signal!r}; "
-                           f"{nearest_of(signal, known)}")
+                           f"{nearest_of(signal, known) if known else 'it has none'}")
         if twice := next((each for each in there if known.count(each) > 1), None):
             raise BadInput(f"{columns.path}: {quantity.name}.columns: {name} has two signals {twice} in the DBC; "
                            "rename one of them there")

@@ -88,7 +88,7 @@ def values_of_frame(twin: Twin, frame: Frame, part: int) -> dict[str, float]:
         return {"acceleration_x": along, "acceleration_y": across, "yaw_rate": shown.imu_yaw_rate_rad_per_s}
     turns = plant.core.lib.laconic_encoder_turns(
         plant.core.ffi.addressof(twin.c.encoder[part]), twin.c.settings.encoder[part].counts_per_turn)
-    return {"count": int(shown.encoder_count[part]), "index_count": (turns + 2**15) % INDEX_TURNS - 2**15}
+    return {"count": int(signed(shown.encoder_count)[part]), "index_count": (turns + 2**15) % INDEX_TURNS - 2**15}
 
 
 def wrap_of(twin: Twin) -> int:

@@ -157,7 +157,7 @@ MAPS = {
     "an infinite gear": ("[wheel_angle]", "[wheel_angle]\ngear_ratio = inf", "wheel_angle.gear_ratio: is inf"),
     "a wheel beyond all": ("[wheel_angle]", "[wheel_angle]\nwheels = [1, 1000000000]", "wheel_angle.wheels: is"),
     "a quotation mark": ('name = "two wheels"', "separator = '\"'", "separator: is"),
-    "a channel of text": ("[wheel_angle]", "[wheel_angle]\nchannel = 1", "wheel_angle.channel: has a meaning only with"),
+    "a channel of text": ("[wheel_angle]", "[wheel_angle]\nchannel = 1", "wheel_angle.channel: has a meaning only"),
     "a number of thousands of digits": ('name = "two wheels"', f"header_lines = {'9' * 5000}", "thousands of digits"),
     "a scale beyond all numbers": ("[wheel_angle]", "[wheel_angle]\nscale = 1e308", "line 3: wheel_angle is too large"),
 }
