@@ -1,4 +1,4 @@
-"""Lines and files of product, tests and apparatus, as git tracks them; pages, data and locks are counted as files alone.
+"""Lines and files of product, tests and apparatus, as git tracks them; pages, data and locks count as files alone.
 
     sizes"""
 
@@ -14,8 +14,8 @@ APPARATUS = ("host_tests/assurance/", "host_tests/tests/assurance/", ".ci/", ".c
              "cmake/check_purity.py", "cmake/LaconicPurity.cmake", "cmake/LaconicFormat.cmake")
 TESTS = ("host_tests/",)                          # behaviour of everything together, and its references
 OF_TESTS = {"tests", "test"}                      # folders next to what they test
-TEXT = (".c", ".h", ".cu", ".py", ".pyi", ".js", ".mjs", ".ts", ".html", ".css", ".cmake", ".txt", ".toml", ".xml", ".dbc",
-        ".in", ".ini", ".sh", ".ld", ".S", ".json", "run", "nightly", ".yml", ".yaml", ".cfg", ".properties")
+TEXT = (".c", ".h", ".cu", ".py", ".pyi", ".js", ".mjs", ".ts", ".html", ".css", ".cmake", ".txt", ".toml", ".xml",
+        ".dbc", ".in", ".ini", ".sh", ".ld", ".S", ".json", "run", "nightly", ".yml", ".yaml", ".cfg", ".properties")
 NO_LINES = ("requirements", "docs/", "scenes/", "LICENSE", "CHANGELOG")  # pages, locks, and robots
 
 

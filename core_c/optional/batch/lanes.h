@@ -35,6 +35,7 @@ static inline laconic_real lanes_of(laconic_number x) { return x - (laconic_real
 #define RARELY(condition, number) lanes_leave((condition), (number))
 #define USUALLY(condition, number) (!lanes_leave(~(condition), (number)))
 #define KEEP_LEFT(number, by) ((void)lanes_leave(NOT((by) == (by)), (number)))
+#define ALONE false
 #define END_STEP(state, delta, path, moved) (lanes_put_off(state, delta, path, moved), LACONIC_OK)
 
 /* In pieces of one register, of which the last is tested. */

@@ -1,8 +1,6 @@
 /* exponential-gauss-8, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as ζ does:
- * with F at the nodes and the panel's weights, by rounds until they settle. Where the rounds of ζ have found the
- * solution of the collocation, all rounds of a direction are linearised there. Where an input turns the vehicle by
- * radians they end before it: then each is linearised where it was, so that the derivative is that of the step as it
- * is. */
+ * with F at the nodes and the panel's weights, by rounds until they settle. The step has been taken, so the rounds of ζ
+ * find the solution of the collocation: all rounds of a direction are linearised there. */
 #include "exponential_gauss_8.h"
 #include "gauss_weight_change.h"
 #include "step_change.h"
@@ -29,7 +27,7 @@ typedef struct panel_trace {
     lanes weight[PANEL_WEIGHTS]; /* the same in every lane */
     real h;
     bool is_whole;
-    bool settles;        /* the rounds of ζ have found the solution */
+    int most_rounds;     /* of a direction: those of ζ converge as fast */
     vector start, still; /* still: what F is without turning        */
     vector path, lacking;
     node_vectors zeta; /* at the nodes, and F of that */
@@ -77,28 +75,19 @@ static void trace_rates(panel_trace *t, const step_point *at) {
     if (at->rotates) trace_turning_forcing(&t->of, t, at);
 }
 
-/* Σ |ζ − other| at the nodes. */
-static real distance(const node_vectors *zeta, const node_vectors *other) {
-    real sum = R(0);
-    for (int j = 0; j < NODES; j++)
-        sum += magnitude(zeta->x[j] - other->x[j]) + magnitude(zeta->y[j] - other->y[j]) +
-               magnitude(zeta->z[j] - other->z[j]);
-    return sum;
-}
-
 /* ζ and F at the nodes. Rounds that go on changing the last digits have settled, too. */
 static void trace_rounds(panel_trace *t, const step_point *at) {
-    static const node_vectors zero;
-    node_vectors before;
-    real change = R(1);
+    real move = R(1);
+    int round = 0;
     begin_rounds(t);
-    for (int round = 0; round < ROUNDS && change != R(0); round++) {
-        before = t->zeta;
+    while (round < MOST_ROUNDS && move != R(0) && (round < ROUNDS || !nodes_settled(&t->zeta, move, SETTLED))) {
+        const node_vectors before = t->zeta;
         trace_rates(t, at);
         answer(&t->zeta, t->start, t->row, &t->of.rate);
-        change = distance(&t->zeta, &before);
+        move = distance_of_nodes(&t->zeta, &before);
+        round++;
     }
-    t->settles = change <= R(64) * LACONIC_EPSILON * distance(&t->zeta, &zero);
+    t->most_rounds = round <= ROUNDS ? ROUNDS : MOST_ROUNDS;
 }
 
 /* What ∂F/∂ζ and ∂F/∂yaw are made of. */
@@ -298,24 +287,8 @@ INLINE bool settled_by_round(lanes zeta[NODES], lanes rate[NODES], const lanes o
     return settled;
 }
 
-/* Takes the rounds of ζ again, and the direction through each of them where it was. */
-RARE void follow_rounds(lanes zeta[NODES], lanes rate[NODES], panel_trace *t, const step_point *at,
-                        const step_direction *in, const step_response *before, const lanes *still,
-                        const panel_model *model) {
-    const lanes start = lanes_plus(in->zeta, before->delta);
-    lanes own[NODES];
-    begin_rounds(t);
-    for (int round = 0; round < ROUNDS; round++) {
-        trace_rates(t, at);
-        trace_slopes(&t->of, t, at);
-        own_changes(own, t, start, model);
-        (void)settled_by_round(zeta, rate, own, t, at, in, before, *still, model);
-        answer(&t->zeta, t->start, t->row, &t->of.rate);
-    }
-}
-
 /* The response of this panel alone, from that of the panels before it. */
-INLINE step_response panel_response(panel_trace *t, const step_point *at, const step_direction *in,
+INLINE step_response panel_response(const panel_trace *t, const step_point *at, const step_direction *in,
                                     const step_response *before, const panel_model *model) {
     const laconic_model *m = at->model;
     const lanes start = lanes_plus(in->zeta, before->delta);
@@ -325,14 +298,10 @@ INLINE step_response panel_response(panel_trace *t, const step_point *at, const 
     if (LACONIC_WITH_DAMPING) still = lanes_minus(still, lanes_times(vec(m->decay_per_s), start));
     if (model != NULL) still = lanes_minus(still, lanes_of(mapped(&model->by->damping, t->start)));
     for (int j = 0; j < NODES; j++) zeta[j] = start;
-    if (t->settles) {
-        bool settled = false;
-        own_changes(own, t, start, model);
-        for (int round = 0; round < ROUNDS && !settled; round++)
-            settled = settled_by_round(zeta, rate, own, t, at, in, before, still, model);
-    } else {
-        follow_rounds(zeta, rate, t, at, in, before, &still, model);
-    }
+    own_changes(own, t, start, model);
+    bool settled = false;
+    for (int round = 0; round < t->most_rounds && !settled; round++)
+        settled = settled_by_round(zeta, rate, own, t, at, in, before, still, model);
     lanes mean = lanes_plus(start, summed_changes(t, rate, OF_MEAN, 1));
     out.delta = summed_changes(t, rate, AT_END, 1);
     if (model != NULL) {
@@ -366,7 +335,7 @@ static const panel_model *model_change_of(panel_model *room, const panel_trace *
     return room;
 }
 
-static void respond_in_panel(step_response out[], panel_trace *t, const step_point *at, const step_direction in[],
+static void respond_in_panel(step_response out[], const panel_trace *t, const step_point *at, const step_direction in[],
                              int32_t count) {
     panel_model room;
     for (int32_t k = 0; k < count; k++) {

@@ -10,6 +10,7 @@ typedef struct taken_step {
     step_point at;
     responder responds;
     step_result result;
+    vector end;       /* ζ after it, with all that the step did          */
     direction middle; /* heading half-way, in whose axes the displacement is */
     real x_m, y_m;    /* the displacement in world axes                      */
 } taken_step;
@@ -62,6 +63,9 @@ laconic_status laconic_take_step(taken_step *s, const laconic_derivation *deriva
 /* Answers directions, and what follows from the step itself. */
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count);
+
+/* The responses of a step whose gain of energy was cut, from those of its method. */
+void laconic_cut_responses(taken_step *s, step_response out[], const step_direction in[], int32_t count);
 
 /* The changes of the state after the step along the directions of the first lanes; x, y and wheel angles before it
  * stay. */

@@ -13,7 +13,7 @@ static const laconic_derived_method *derived(const laconic_derivation *derivatio
 }
 
 /* Takes the step on a copy of the state. */
-static laconic_status find_responder(responder *found, const laconic_derivation *derivation, const laconic_model *model,
+static laconic_status find_responder(taken_step *s, const laconic_derivation *derivation, const laconic_model *model,
                                      const laconic_integrator *integrator, const laconic_state *state,
                                      const laconic_forcing *forcing) {
     const laconic_forcing_samples samples = {forcing, forcing, forcing, !forcing->rotates};
@@ -22,9 +22,10 @@ static laconic_status find_responder(responder *found, const laconic_derivation 
     laconic_status status = LACONIC_METHOD_UNKNOWN;
     if (of == NULL) return status;
     for (int i = 0; i < 3 && status != LACONIC_OK && of->tried[i].method != NULL; i++) {
-        *found = of->tried[i].responds;
+        s->responds = of->tried[i].responds;
         status = of->tried[i].method->step(model, integrator, &after, &samples);
     }
+    s->end = zeta_of(&after);
     return status;
 }
 
@@ -34,7 +35,7 @@ laconic_status laconic_take_step(taken_step *s, const laconic_derivation *deriva
     laconic_forcing forcing;
     if (zero_if_finite(world_force_point(held)) != R(0) || !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
     forcing_of(&forcing, model, held);
-    const laconic_status status = find_responder(&s->responds, derivation, model, integrator, state, &forcing);
+    const laconic_status status = find_responder(s, derivation, model, integrator, state, &forcing);
     if (status != LACONIC_OK) return status;
     s->at.model = model;
     s->at.integrator = integrator;
@@ -54,6 +55,7 @@ laconic_status laconic_take_step(taken_step *s, const laconic_derivation *deriva
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count) {
     s->responds(&s->result, out, &s->at, in, count);
+    laconic_cut_responses(s, out, in, count);
     const pose_change *moved = &s->result.moved;
     s->middle = laconic_direction_of_binary_angle(
         (laconic_binary_angle)(state->heading.fraction + laconic_binary_angle_of(R(0.5) * moved->yaw_change_rad)));

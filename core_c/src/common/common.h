@@ -43,6 +43,7 @@ typedef bool verdict;    /* the result of a comparison                          
 #define USUALLY(condition, number) (condition)
 /* Where of a part of a step only `by` goes on, and as an angle would lose its NaN: a lane that left stays NaN. */
 #define KEEP_LEFT(number, by) ((void)0)
+#define ALONE true           /* one vehicle: rounds may differ in number from those of another */
 #define END_STEP accept_step /* the last part of a step; lanes put it off until others have begun theirs */
 #endif
 

@@ -123,7 +123,7 @@ static laconic_status exact_flow_step(const laconic_model *model, const laconic_
     const vector zeta = zeta_of(state);
     const increment by = constant_over(samples) ? base_alone(flow_base, model, integrator, zeta, samples)
                                                 : flow_varying(model, integrator, state, samples);
-    return advance(state, model, integrator->step_s, zeta, by);
+    return advance_levelled(state, model, integrator->step_s, samples, zeta, by);
 }
 
 static laconic_status exact_flow_prepare(laconic_integrator *integrator, const laconic_model *model,
@@ -147,7 +147,7 @@ static laconic_status exact_flow_4_step(const laconic_model *model, const laconi
     const vector zeta = zeta_of(state);
     const increment by = constant_over(samples) ? extrapolated(flow_base, model, integrator, zeta, samples)
                                                 : flow_4_varying(model, integrator, state, samples);
-    return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
+    return advance_with_energy(state, model, integrator->step_s, samples, zeta, by);
 }
 
 static laconic_status exact_flow_4_prepare(laconic_integrator *integrator, const laconic_model *model,

@@ -31,6 +31,7 @@ typedef struct panel {
 typedef struct progress {
     vector delta, mean; /* ∫ζ ds */
     pose_change moved;
+    verdict settled; /* the rounds of every panel so far */
 } progress;
 
 static vector parabola_at(const vector term[3], real s) {
@@ -117,31 +118,51 @@ INLINE vector weighted(const panel *p, int weights, const node_vectors *rate) {
     return sum;
 }
 
-/* A round; returns whether it left every number as it was. Then all further rounds would, too, so that ending here
- * changes no bit. */
-INLINE bool settled_by_answer(node_vectors *zeta, vector start, const panel *p, const node_vectors *rate) {
+/* A round; returns how far it moved the numbers: 0 where it left every one as it was. Then all further rounds would,
+ * too, so that ending there changes no bit. */
+INLINE real moved_by_answer(node_vectors *zeta, vector start, const panel *p, const node_vectors *rate) {
     const node_vectors before = *zeta;
-    real change = R(0);
     answer(zeta, start, p->weight, rate);
-    for (int j = 0; j < NODES; j++)
-        change += magnitude(zeta->x[j] - before.x[j]) + magnitude(zeta->y[j] - before.y[j]) +
-                  magnitude(zeta->z[j] - before.z[j]);
-    return ALL(change == R(0));
+    return distance_of_nodes(zeta, &before);
 }
 
-/* Find ζ and F at the nodes, by rounds from F at the start on. */
-INLINE void take_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p, vector start) {
+/* Takes the rounds after the first ROUNDS, for one vehicle. Returns whether they found the solution. */
+RARE verdict take_more_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
+                              vector start, real yaw_before, real last_move) {
     const vector still = minus(p->constant, damping(m, start));
+    real move = last_move;
+    if (!ALONE) return nodes_settled(zeta, move, SETTLED);
+    for (int round = ROUNDS; round < MOST_ROUNDS; round++) {
+        if (!ALL(is_finite(move)) || ALL(nodes_settled(zeta, move, SETTLED))) break;
+        rates_at(rate, m, zeta, still);
+        if (p->varying != NULL) add_varying_forcing(rate, m, p, zeta, yaw_before);
+        move = moved_by_answer(zeta, start, p, rate);
+    }
+    return nodes_settled(zeta, move, SETTLED_AT_LAST);
+}
+
+/* Finds ζ and F at the nodes, by rounds from F at the start on. Returns whether they are the solution. */
+INLINE verdict take_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
+                           vector start) {
+    const vector still = minus(p->constant, damping(m, start));
+    real move = R(0);
     first_answer(zeta, start, p->weight, first_rate(m, start, still));
     for (int round = 1; round < ROUNDS; round++) {
         rates_at(rate, m, zeta, still);
-        if (settled_by_answer(zeta, start, p, rate)) return;
+        move = moved_by_answer(zeta, start, p, rate);
+        if (ALL(move == R(0))) return KNOWN(true, move == R(0));
     }
+    node_vectors at = *zeta, f = *rate; /* only copies are in memory */
+    const verdict settled = take_more_rounds(&at, &f, m, p, start, R(0), move);
+    *zeta = at;
+    *rate = f;
+    return settled;
 }
 
-RARE void take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
-                              vector start, real yaw_before) {
+RARE verdict take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
+                                 vector start, real yaw_before) {
     const vector still = minus(none, damping(m, start));
+    real move = R(0);
     for (int j = 0; j < NODES; j++) {
         zeta->x[j] = start.x;
         zeta->y[j] = start.y;
@@ -150,8 +171,10 @@ RARE void take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laco
     for (int round = 0; round < ROUNDS; round++) {
         rates_at(rate, m, zeta, still);
         add_varying_forcing(rate, m, p, zeta, yaw_before);
-        if (settled_by_answer(zeta, start, p, rate)) return;
+        move = moved_by_answer(zeta, start, p, rate);
+        if (ALL(move == R(0))) return KNOWN(true, move == R(0));
     }
+    return take_more_rounds(zeta, rate, m, p, start, yaw_before, move);
 }
 
 /* What follows from ζ and F at the nodes. */
@@ -174,11 +197,13 @@ static void take_panel(progress *found, const laconic_model *m, const panel *p, 
     const vector start = plus(step_start, found->delta);
     if (p->varying == NULL) {
         node_vectors zeta, rate;
-        take_rounds(&zeta, &rate, m, p, start);
+        const verdict settled = take_rounds(&zeta, &rate, m, p, start);
+        found->settled = BOTH(found->settled, settled);
         finish_panel(found, m, p, start, &zeta, &rate);
     } else {
         node_vectors zeta, rate; /* others, since these are in memory */
-        take_varying_rounds(&zeta, &rate, m, p, start, found->moved.yaw_change_rad);
+        const verdict settled = take_varying_rounds(&zeta, &rate, m, p, start, found->moved.yaw_change_rad);
+        found->settled = BOTH(found->settled, settled);
         finish_panel(found, m, p, start, &zeta, &rate);
     }
 }
@@ -203,7 +228,7 @@ RARE void take_panels(progress *found, const laconic_model *m, const laconic_int
 static laconic_status exponential_gauss_8_step(const laconic_model *model, const laconic_integrator *integrator,
                                                laconic_state *state, const laconic_forcing_samples *samples) {
     vector zeta = zeta_of(state);
-    progress found = {none, none, {R(0), R(0), R(0)}};
+    progress found = {none, none, {R(0), R(0), R(0)}, R(0) == R(0)};
     forcing_terms terms;
     panel p;
     if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
@@ -226,10 +251,11 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     else
         take_panels(&found, model, integrator, &p, zeta);
     increment by = {found.delta, found.mean, found.delta};
-    if (!USUALLY(passive(model, state, integrator->step_s, samples, zeta, by), &found.moved.along_m))
+    if (!USUALLY(found.settled, &found.moved.along_m)) return LACONIC_STEP_SINGULAR;
+    if (!USUALLY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &found.moved.along_m))
         return not_passive(by);
     if (!USUALLY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
-    return END_STEP(state, by.delta, scaled(integrator->step_s, by.mean), found.moved);
+    return end_levelled(state, model, integrator->step_s, samples, zeta, by, found.moved);
 }
 
 /* ------------------------------------------------------------------------------ preparation -- */

@@ -9,9 +9,14 @@
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
-/* At most; they end when one changes nothing, after 4 to 9 in usual steps. 8 have the order; as many as here find the
- * solution of the collocation up to h·|w||g·ζ| = 1.5, so that free motion keeps its energy to rounding. */
+/* The rounds end when one changes nothing, after 4 to 9 in usual steps, and from ROUNDS on when one moves ζ at the nodes
+ * by rounding alone. 8 have the order; ROUNDS find the solution of the collocation up to h·|w||g·ζ| = 1.5. A step for
+ * which MOST_ROUNDS do not find it is refused: free motion would not keep its energy. Where they hardly converge, they
+ * end in moves that are larger than a rounding. */
 #define ROUNDS 32
+#define MOST_ROUNDS 128
+#define SETTLED (R(8) * LACONIC_EPSILON)           /* move of a round over Σ|ζ| */
+#define SETTLED_AT_LAST (R(256) * LACONIC_EPSILON) /* after MOST_ROUNDS */
 
 /* ------------------------------------------------------------------ weights of a panel -- */
 
@@ -108,6 +113,21 @@ static inline void double_phis(real phi[PHIS * (NODES + 1)]) {
 typedef struct node_vectors {
     real x[NODES], y[NODES], z[NODES];
 } node_vectors;
+
+/* Σ|ζ − other| at the nodes. */
+INLINE real distance_of_nodes(const node_vectors *zeta, const node_vectors *other) {
+    real sum = R(0);
+    for (int j = 0; j < NODES; j++)
+        sum += magnitude(zeta->x[j] - other->x[j]) + magnitude(zeta->y[j] - other->y[j]) +
+               magnitude(zeta->z[j] - other->z[j]);
+    return sum;
+}
+
+/* Whether a round that moved ζ at the nodes so far ended at the solution. False for NaN. */
+static inline verdict nodes_settled(const node_vectors *zeta, real move, real tolerance) {
+    static const node_vectors zero;
+    return move <= tolerance * distance_of_nodes(zeta, &zero);
+}
 
 /* F at each node, b where it is constant being part of `still`. */
 INLINE void rates_at(node_vectors *rate, const laconic_model *m, const node_vectors *zeta, vector still) {

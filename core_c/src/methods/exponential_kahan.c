@@ -135,7 +135,7 @@ static laconic_status exponential_kahan_4_step(const laconic_model *model, const
     const vector zeta = zeta_of(state);
     const increment by = constant_over(samples) ? extrapolated(kahan_base, model, integrator, zeta, samples)
                                                 : kahan_4_varying(model, integrator, state, samples);
-    return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
+    return advance_with_energy(state, model, integrator->step_s, samples, zeta, by);
 }
 
 static laconic_status exponential_kahan_4_prepare(laconic_integrator *integrator, const laconic_model *model,

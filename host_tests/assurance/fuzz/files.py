@@ -18,12 +18,12 @@ from typing import Any
 
 import laconic
 from assurance.common import ROOT, Clock, work
-from laconic.errors import BadInput, ResultFails
-from laconic.robot.logs.column_map import MAPS
-from laconic.robot.logs.column_map import read_map as read_columns
 from laconic.base.paths import SCENE_DIR
 from laconic.can.play.map_file import read_map as read_joints
 from laconic.can.play.map_join import join
+from laconic.errors import BadInput, ResultFails
+from laconic.robot.logs.column_map import MAPS
+from laconic.robot.logs.column_map import read_map as read_columns
 from laconic.scene.scene import read_scene
 from laconic.scene.table import entries_of
 

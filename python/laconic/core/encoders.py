@@ -1,7 +1,7 @@
 """Settings of encoders: read by the same rules from a scene's [sensors.encoder], for Plant.sensors, and for Filter.
 
 In the core's struct 0 counts are no encoder, a gear ratio of 0 is 1, and a wrap of 0 is 32 bits; whoever writes such a
-0 means something else, so it is refused here.
+0 means something else, so it is refused here. A wrap of 2³² is 32 bits, too, shown without a sign.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from laconic.errors import BadInput
 COUNTS, GEAR, WRAP = KEYS = ("counts_per_turn", "gear_ratio", "wrap")
 NO_ENCODER = False  # in a list of counts: a wheel without an encoder
 LEAST_INTEGER, MOST_INTEGER = -(2**31), 2**31 - 1
+WHOLE_COUNT = 2**32  # wrap of an unsigned counter of 32 bits; the core shows the same bits as numbers with sign
 A_COUNT = "a whole number, or a list with one for each wheel, false for none"
 
 Fail = Callable[[str, str], NoReturn]
@@ -89,22 +90,45 @@ def _gear(given: Any, fail: Fail) -> float:
     return value
 
 
+def is_unsigned(given: Mapping[str, Any]) -> bool:
+    """Whether encoders with these settings show numbers from 0 to 2³² − 1."""
+    return given.get(WRAP) == WHOLE_COUNT
+
+
+def core_wrap(wrap: int) -> int:
+    """The wrap of the core's struct, whose integers have 32 bits with sign."""
+    return 0 if wrap == WHOLE_COUNT else wrap
+
+
+def unsigned(counts: np.ndarray) -> np.ndarray:
+    """Counts of 32 bits with sign as those of an unsigned counter."""
+    found: np.ndarray = np.where(counts < 0, counts + WHOLE_COUNT, counts)
+    return found
+
+
+def signed(counts: np.ndarray) -> np.ndarray:
+    """The inverse of `unsigned`."""
+    found: np.ndarray = np.where(counts > MOST_INTEGER, counts - WHOLE_COUNT, counts)
+    return found
+
+
 def _wrap(given: Any, fail: Fail) -> int:
-    wrap = _whole(WRAP, given, "a whole number", fail)
+    wrap = _whole(WRAP, given, "a whole number", fail, (WHOLE_COUNT,))
     if wrap < 2:
         fail(WRAP, f"is {wrap}; give the number of values that the counter has, such as 65536, or take it out for 32 "
              "bits")
     return wrap
 
 
-def _whole(key: str, given: Any, what: str, fail: Fail) -> int:
-    """A whole number that the core has room for."""
+def _whole(key: str, given: Any, what: str, fail: Fail, others: tuple[int, ...] = ()) -> int:
+    """A whole number that the core has room for, or one of some others."""
     try:
         found = operator.index(given if is_real(given) else None)  # type: ignore[arg-type]  # which it refuses
     except TypeError:
         fail(key, f"is {str(given).lower() if isinstance(given, bool) else shown(given)}, not {what}")
-    if not LEAST_INTEGER <= found <= MOST_INTEGER:
-        fail(key, f"is {found}; give a whole number of at most 32 bits, {LEAST_INTEGER} to {MOST_INTEGER}")
+    if not LEAST_INTEGER <= found <= MOST_INTEGER and found not in others:
+        more = "".join(f", or {other}" for other in others)
+        fail(key, f"is {found}; give a whole number of at most 32 bits, {LEAST_INTEGER} to {MOST_INTEGER}{more}")
     return int(found)
 
 

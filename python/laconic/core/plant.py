@@ -13,7 +13,7 @@ from laconic.core.given import c_object, number, shown, step_count
 from laconic.core.inputs import check_held, sampled_rows
 from laconic.core.saved import check_motion_of, check_saved, check_wheels_of
 from laconic.core.schedule import Schedule
-from laconic.core.sensors import Sensors, settings_of
+from laconic.core.sensors import Sensors, settings_of, shows_unsigned
 from laconic.errors import BadInput
 
 if TYPE_CHECKING:
@@ -140,7 +140,8 @@ class Plant:
 
         BadInput names a key that is unknown or no number; Refused one that the core refuses.
         """
-        return Sensors(self, settings_of(self.core, {} if settings is None else settings, self.wheel_count))
+        given = {} if settings is None else settings
+        return Sensors(self, settings_of(self.core, given, self.wheel_count), shows_unsigned(given))
 
     def estimate(self, most_steps: int = USUAL_STEPS) -> Estimate:
         """An error estimate that watches the run from here on; one step in `most_steps` is taken twice."""

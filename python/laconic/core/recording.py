@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.encoders import unsigned
 from laconic.core.grip import Grip
 
 if TYPE_CHECKING:
@@ -73,8 +74,11 @@ class Recorder:
     def columns(self) -> dict[str, np.ndarray]:
         """What was taken, by signal name; counts as whole numbers."""
         table = self._table[: self.c.row_count].astype(float, copy=False)
-        return {signal: column.astype(np.int64) if is_whole(signal) else column
+        return {signal: self._counts(column.astype(np.int64)) if is_whole(signal) else column
                 for signal, column in zip(self.signals, table.T, strict=True)}
+
+    def _counts(self, column: np.ndarray) -> np.ndarray:
+        return unsigned(column) if self._sensors is not None and self._sensors.is_unsigned else column
 
     def grip(self, step_s: float) -> Grip | None:
         """What the watch has found in steps of `step_s`; None where there was no watch."""

@@ -14,7 +14,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.encoders import GEAR, KEYS, LEAST_INTEGER, MOST_INTEGER, failing, read_encoders
+from laconic.core.encoders import (
+    GEAR,
+    KEYS,
+    LEAST_INTEGER,
+    MOST_INTEGER,
+    WRAP,
+    core_wrap,
+    failing,
+    is_unsigned,
+    read_encoders,
+    unsigned,
+)
 from laconic.core.fields import ITEM, Field
 from laconic.core.given import c_object, is_real, number, several, shown, step_count
 from laconic.core.inputs import sampled_rows
@@ -45,11 +56,13 @@ class Sensors:
     """IMU and encoders of one plant; `c` is the laconic_sensors itself. Step the plant by `run` from now on, as the
     sensors must see each step."""
 
-    def __init__(self, plant: Plant, settings: Any):
+    def __init__(self, plant: Plant, settings: Any, is_unsigned: bool = False):
         """Sensors as after power-up, beside a plant that stands where it is; `settings`: a laconic_sensor_settings.
+        `is_unsigned`: encoders without a wrap show numbers from 0 to 2³² − 1.
 
         Refused names the field that the core refuses.
         """
+        self.is_unsigned = is_unsigned
         self.plant, core = plant, plant.core
         self.c: Any = core.ffi.new("laconic_sensors *")
         why = core.why()
@@ -81,9 +94,10 @@ class Sensors:
         core.lib.laconic_sensors_read(shown_now, self.c, plant.c, plant.input_of(held))
         acceleration = core.numbers(shown_now.acceleration_body_m_per_s2)
         core.check_range("acceleration_body_m_per_s2", acceleration)
+        counts = core.numbers(shown_now.encoder_count)[: plant.wheel_count].astype(np.int64)
         return Readings(acceleration,
                         core.numbers(shown_now.imu_acceleration_m_per_s2), float(shown_now.imu_yaw_rate_rad_per_s),
-                        core.numbers(shown_now.encoder_count)[: plant.wheel_count].astype(np.int64))
+                        unsigned(counts) if self.is_unsigned else counts)
 
     def save(self) -> Any:
         """A copy of the sensors' state, with the samples that are on their way; save the plant with it."""
@@ -117,11 +131,17 @@ def settings_of(core: Core, given: Mapping[str, Any], wheel_count: int) -> Any:
     return settings
 
 
+def shows_unsigned(given: Mapping[str, Any]) -> bool:
+    """Whether the encoders of {"encoder": {…}} show numbers from 0 to 2³² − 1."""
+    return isinstance(encoder := given.get("encoder", {}), Mapping) and is_unsigned(encoder)
+
+
 def put_encoders(core: Core, settings: Any, name: str, given: Any, wheel_count: int) -> None:
     """The encoders that the table of this name gives, into a laconic_sensor_settings; BadInput names what is none."""
     fail, fields = failing(name), {field.key: field for field in core.fields_of(ENCODER)}
     found = read_encoders(_mapping(name, given, KEYS), wheel_count, fail)
     for key, value in found.items():
+        value = core_wrap(value) if key == WRAP else value
         _put(settings, fields[key], value if isinstance(value, tuple) else (value,))
     for gear in found.get(GEAR, ()):
         with np.errstate(over="ignore", under="ignore"):

@@ -184,7 +184,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
         "Counts of one turn of the encoder's shaft, all edges counted", usual="must be given", range="above 0"),
     Key("sensors.encoder.gear_ratio", "number, or list with one for each encoder", usual="1", range="not 0"),
     Key("sensors.encoder.wrap", meaning="How many values the counter has: 65536 shows 0 to 65535",
-        usual="32 bits with sign", range="2 or more"),
+        usual="32 bits with sign", range="2 to 2³¹ − 1, or 2³²"),
     Key("speed_controller.gain_As_per_rad", A_NUMBER, "P of the motors' current P (set − s) + I ∫(set − s) dt, with "
                                                       "speeds s of the wheels", rule=POSITIVE),
     Key("speed_controller.integral_gain_A_per_rad", A_NUMBER, "I of it", 0.0, rule=NOT_NEGATIVE),

@@ -26,22 +26,24 @@ MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual scene
 NO_HINTS: Mapping[str, str] = {}
 
 
-def read_toml(path: Path) -> Table:
-    """The file's top table."""
+def read_toml(path: Path, decode: Callable[[bytes], str] | None = None) -> Table:
+    """The file's top table; `decode` makes text of its bytes, UTF-8 if not given."""
     try:
         with path.open("rb") as file:
             given = file.read(MOST_BYTES + 1)
         if len(given) > MOST_BYTES:
             raise BadInput(f"{path}: has more than {MOST_BYTES >> 20} MiB, which no scene needs; give the path of a "
                            "scene")
-        text = given.decode("utf-8-sig")
+        text = given.decode("utf-8-sig") if decode is None else decode(given)
         return Table(path, "", entries_of(text))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None
     except UnicodeDecodeError:
         raise BadInput(f"{path}: is no text in UTF-8; save it as UTF-8") from None
-    except ValueError as error:  # of TOML, or of Python: an integer of thousands of digits
+    except tomllib.TOMLDecodeError as error:
         raise BadInput(f"{path}: is no valid TOML: {error}{_line_of(text, error)}; correct that line") from None
+    except ValueError:  # of Python
+        raise BadInput(f"{path}: is no valid TOML: a number has thousands of digits; correct it") from None
     except RecursionError:
         raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None
 

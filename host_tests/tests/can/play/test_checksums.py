@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
-import cantools
 import e2e.p01
 import e2e.p02
 import e2e.p05
@@ -13,6 +12,7 @@ import e2e.p11
 import pytest
 from crccheck.crc import Crc8Autosar, Crc8Base, Crc8SaeJ1850, Crc16CcittFalse
 
+from laconic.can.dbc_file import load_dbc
 from laconic.can.play.checksums import CHECKSUMS, Checksum
 from laconic.can.play.map_dbc import DbcMessage
 from laconic.can.play.map_file import Conversion, Counter, Joint, Received, Sent
@@ -36,7 +36,7 @@ def message_of(tmp_path: Path, check: str, count: str, value: str = "55|16@0-", 
                ) -> DbcMessage:
     path = tmp_path / "guarded.dbc"
     path.write_text(DBC.format(check=check, count=count, value=value, other=other), encoding="utf-8")
-    return DbcMessage(path, cantools.database.load_file(path), "map: send[1]", "GUARDED")
+    return DbcMessage(path, load_dbc(path, "--dbc"), "map: send[1]", "GUARDED")
 
 
 def pair(message: DbcMessage, checksum: Checksum) -> tuple[Sender, Receiver]:

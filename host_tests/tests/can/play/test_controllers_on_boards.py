@@ -11,17 +11,17 @@ import can
 import numpy as np
 import pytest
 from canopen.nmt import NmtError
+from laconic.soak._controllers import by_canopen
+from laconic.soak._controllers.bench import Bench, bench
+from laconic.soak._controllers.truth import Truth
+from laconic.soak.controllers import CONTROLLERS, run
+from laconic.soak.lateness import measure
 
 from laconic.can.play.vehicle import played
 from laconic.can.rig.boards import why_no_emulation
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run as run_command
 from laconic.scene import read_scene
-from laconic.soak._controllers import by_canopen
-from laconic.soak._controllers.bench import Bench, bench
-from laconic.soak._controllers.truth import Truth
-from laconic.soak.controllers import CONTROLLERS, run
-from laconic.soak.lateness import measure
 
 emulated = pytest.mark.skipif(why_no_emulation() is not None, reason="no emulated boards")
 STEP_S = 0.005

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 
 import pytest
-
-from laconic.base.paths import SOURCE_DIR
-from laconic.errors import BadInput
 from laconic.soak import faults
 from laconic.soak._campaigns.memory import NODE, REALS, RESTART, count, total, tried, worst_ms
 from laconic.soak._campaigns.session import figures
+
+from laconic.base.paths import SOURCE_DIR
+from laconic.errors import BadInput
 
 SAMPLE = 2000
 SEED = 1

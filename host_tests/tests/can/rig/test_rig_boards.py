@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 
 import pytest
+from laconic.soak import boards as boards_soak
 
 from laconic.base.paths import scene_names
 from laconic.can.rig.boards import emulated_node, why_no_emulation
@@ -16,7 +17,6 @@ from laconic.can.rig.wire import wire
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene, read_scene
 from laconic.scene.ground import has_friction
-from laconic.soak import boards as boards_soak
 from laconic.tools.report.node_sizes import cost_of
 from laconic.tools.trim import needs_of
 

@@ -61,6 +61,19 @@ def test_the_nodes_sensors_have_the_bits_of_the_core(tmp_path: Path, name: str, 
     assert run.states.tobytes() == theirs.tobytes()
 
 
+def test_a_node_has_the_bits_of_an_encoder_of_32_bits_without_sign(tmp_path: Path) -> None:
+    sensors = SENSORS.replace("wrap = 4096", f"wrap = {2**32}")
+    scene = scene_with_sensors(tmp_path, "turtlebot3_burger", sensors=sensors)
+    with virtual_node() as node:
+        run = run_lockstep(node, scene, 100, every=1, fd=True)
+    assert run.states.tobytes() == twin_states(scene, run).tobytes() and run.states[-1, -2:].min() < 0.0
+    scaled = replace(scene, rig=replace(scene.rig, frames=FRAMES))
+    with virtual_node() as node:
+        assert judge_scaled(node, scaled, 100, {}).passed
+    with own_node("virtual", "double") as node:
+        assert judge_free_run(node, scaled, 0.5, 100, 0, {}).passed
+
+
 def test_the_judge_compares_every_number_of_the_sensors(tmp_path: Path) -> None:
     with virtual_node() as node:
         judgement = judge_same_bits(node, scene_with_sensors(tmp_path, "turtlebot3_burger"), 50)

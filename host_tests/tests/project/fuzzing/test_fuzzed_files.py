@@ -8,14 +8,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from laconic.base.paths import SOURCE_DIR, built
-from laconic.errors import BadInput
-from laconic.scene.table import entries_of
 from laconic.soak._fuzzing import files, kept
 from laconic.soak._fuzzing.file_readers import FILE_TARGETS, FileTarget
 from laconic.soak._fuzzing.spoil import Spoiler, lines_of
 from laconic.soak._fuzzing.targets import targets_by_name
+
+from laconic.base.paths import SOURCE_DIR, built
+from laconic.errors import BadInput
+from laconic.scene.table import entries_of
 
 INPUTS = {"scenes": 120, "column-maps": 300, "dbc-maps": 150, "dbc": 60}
 GOOD = 'name = "a"\n[vehicle]\nmass_kg = 1.5\n[[vehicle.wheel]]\nat = [1, 2]\n'

@@ -7,9 +7,9 @@ import subprocess
 import sys
 
 import pytest
+from laconic.cli.commands.soak import kinds
 
 from laconic.base.paths import build_dir, built, scene_path
-from laconic.cli.commands.soak import kinds
 from laconic.cli.main import commands, run
 from laconic.errors import BadInput
 

@@ -43,6 +43,17 @@ def test_steps_at_once_and_one_by_one_show_the_same_and_move_as_without_sensors(
     assert repr(many.read()) == repr(single.read())
 
 
+def test_an_encoder_of_32_bits_without_sign_shows_numbers_from_0_on() -> None:
+    found = []
+    for wrap in ({}, {"wrap": 2**32}):
+        sensors = sensed({"encoder": {"counts_per_turn": 4096, "gear_ratio": -1.0} | wrap})
+        sensors.run(HELD, 200)
+        found.append(sensors.read().encoder_count)
+        sensors.restore(sensors.save())
+        assert (sensors.read().encoder_count == found[-1]).all()
+    assert found[0].min() < 0 <= found[1].min() and (found[0] % 2**32 == found[1]).all()
+
+
 def test_saved_sensors_continue_as_they_would_have() -> None:
     sensors = sensed(SETTINGS)
     sensors.run(HELD, 20)
@@ -83,6 +94,10 @@ REFUSED = {
     "gear not finite": ({"encoder": {"counts_per_turn": 4, "gear_ratio": np.nan}}, "gear_ratio: nan is no finite"),
     "no wrap": ({"encoder": {"counts_per_turn": 4, "wrap": 0}},
                 "sensors.encoder.wrap: is 0; give the number of values that the counter has, such as 65536"),
+    "wrap between": ({"encoder": {"counts_per_turn": 4, "wrap": 2**31}},
+                     "sensors.encoder.wrap: is 2147483648; give a whole number of at most 32 bits"),
+    "wrap beyond": ({"encoder": {"counts_per_turn": 4, "wrap": 2**33}}, "2147483647, or 4294967296"),
+    "counts of 32 bits": ({"encoder": {"counts_per_turn": 2**32}}, "counts_per_turn: is 4294967296; give"),
     "wrap of one": ({"encoder": {"counts_per_turn": 4, "wrap": 1}}, "sensors.encoder.wrap: is 1; give the number"),
     "wrap in halves": ({"encoder": {"counts_per_turn": 4, "wrap": 2.5}}, "wrap: is 2.5, not a whole number"),
     "negative wrap": ({"encoder": {"counts_per_turn": 4, "wrap": -1}}, "sensors.encoder.wrap: is -1; give the number"),

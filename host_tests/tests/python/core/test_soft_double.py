@@ -6,10 +6,10 @@ import shutil
 from pathlib import Path
 
 import pytest
+from laconic.targets import board_lines
 
 from laconic.base.paths import SOURCE_DIR, built
 from laconic.cli.main import run
-from laconic.targets import board_lines
 from laconic.tools.report.binary_tools import run_tool
 from laconic.tools.report.workshop import BOARDS, M4F
 

@@ -12,6 +12,7 @@ from dataclasses import astuple
 
 import pytest
 from flint import arb
+from laconic.soak.enclosures import random_scene
 
 from laconic.base.paths import built
 from laconic.core import load
@@ -19,7 +20,6 @@ from laconic.core.estimate import NAMES
 from laconic.errors import BadInput, Refused
 from laconic.scene import METHODS, read_scene
 from laconic.simulation import simulate
-from laconic.soak.enclosures import random_scene
 from laconic.tools.enclosure.balls import precision
 from laconic.tools.enclosure.readings import reading_of_file
 from laconic.tools.enclosure.study import enclose, state_signals

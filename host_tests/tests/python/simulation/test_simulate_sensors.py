@@ -120,6 +120,18 @@ def test_an_encoder_counts_the_turns_of_its_wheel_and_wraps(tmp_path: Path) -> N
         assert np.ptp(column) > 60000  # it has wrapped
 
 
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_a_counter_of_32_bits_without_sign_shows_the_same_bits_from_0_on(tmp_path: Path, real: str) -> None:
+    signed, unsigned = (simulate(sensed_scene(tmp_path, SINES, ENCODERS.replace("wrap = 65536\n", wrap),
+                                              "[run]\nduration_s = 2.0\nstep_s = 0.002\n").with_run(real=real))
+                        for wrap in ("", f"wrap = {2**32}\n"))
+    for wheel in (1, 3):
+        name = f"encoder_count[{wheel}]"
+        before, after = signed.columns[name], unsigned.columns[name]
+        assert before.min() < 0 and after.min() >= 0 and after.max() > 2**31
+        assert (after == before % 2**32).all()
+
+
 def test_sensors_change_no_bit_of_the_motion(tmp_path: Path) -> None:
     signals = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "wheel_angle_rad", "energy_J")
     for inputs in (SINES, STEPS):

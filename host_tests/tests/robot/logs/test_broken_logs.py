@@ -121,7 +121,7 @@ MAPPED = {
     "a column twice": ("columns = [2, 3, 4]", "columns = [2, 3, 3]", "pose.columns: names 3 twice"),
     "a column 0": ("column = 1", "column = 0", "time.column: holds 0"),
     "a column beyond": ("columns = [2, 3, 4]", "columns = [2, 3, 44]", "line 1: has 6 columns, no column 44"),
-    "two columns of a pose": ("columns = [2, 3, 4]", "columns = [2, 3]", "pose.columns: has 2 entries; give 3"),
+    "four columns of a pose": ("columns = [2, 3, 4]", "columns = [2, 3, 4, 5]", "pose.columns: has 4 entries; give 3"),
     "names without a line of names": ("column = 1", 'column = "t"', "the log has no line of names"),
     "a kind that is none": ('"increments"', '"differences"', "wheel_angle.kind: there is no 'differences'"),
     "a sign that is none": ('unit = "tick"', 'unit = "tick"\nsign = 2', "sign: holds a number that is neither"),

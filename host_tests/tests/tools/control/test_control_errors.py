@@ -163,6 +163,16 @@ def test_readings_that_are_none_are_refused_and_leave_the_filter_as_it_was(call,
 COUNTED = {"counts_per_turn": 2000}
 
 
+def test_counts_of_32_bits_without_sign_are_the_same_reading():
+    states = []
+    for wrap, counts in (({}, [-5, 7, -9]), ({"wrap": 2**32}, [2**32 - 5, 7, 2**32 - 9])):
+        found = Filter(plant(0.01), KNOWN, encoder=COUNTED | wrap)
+        found.predict({"voltage_V": [6, -3, 2]})
+        found.counts(counts)
+        states.append(found.state.tolist())
+    assert states[0] == states[1]
+
+
 @pytest.mark.parametrize("counts", [0, -100, [4096, 0, 4096]])
 def test_counts_need_an_encoder_at_every_wheel(counts):
     message = refused(lambda: Filter(plant(0.01), KNOWN, encoder={"counts_per_turn": counts}))

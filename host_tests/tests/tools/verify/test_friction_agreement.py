@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import laconic.soak.friction
 import numpy as np
 import pytest
-
-import laconic.soak.friction
 from laconic.soak import StoppedEarly
 from laconic.soak.friction import MOST_COLD_REFUSED, MOST_WARM_REFUSED
+
 from references.friction.agreement import LIMIT, Count, compare, energy_difference
 from references.friction.core_solver import CoreSolution, solve_in_core
 from references.friction.driven import drive, energy_gain

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
-
 import laconic.soak.friction_energy
-from laconic.errors import Refused
+import pytest
 from laconic.soak import StoppedEarly
+
+from laconic.errors import Refused
 from references.friction import coasting
 from references.friction.coasting import ROUNDING, Coasted, coast, rest
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NoReturn
 
-from cantools.database.can import Database, Message
+from cantools.database.can import Message
 from cantools.database.can.signal import Signal
 
+from laconic.can.dbc_file import Dbc
 from laconic.errors import BadInput, nearest_of
 
 FLOAT_BITS = (16, 32, 64)
+LARGEST_FLOATS = {16: 65504.0, 32: 3.4028234663852886e38}
 FD_LENGTHS = (12, 16, 20, 24, 32, 48, 64)
 
 Page = tuple[tuple[str, int], ...]
@@ -21,27 +24,27 @@ Page = tuple[tuple[str, int], ...]
 class DbcMessage:
     """One message of a DBC as a map uses it; `where` names the map's entry in messages."""
 
-    def __init__(self, dbc: Path, database: Database, where: str, name: str, key: str = "message"):
+    def __init__(self, dbc: Path, database: Dbc, where: str, name: str, key: str = "message"):
         self.dbc, self.where = dbc, where
-        by_name = {each.name: each for each in database.messages}
-        if name not in by_name:
-            raise BadInput(f"{where}.{key}: {dbc.name} has no message {name!r}; {nearest_of(name, by_name)}")
-        self.c: Message = by_name[name]
-        self._check(database)
+        self.name = name
+        entry = database.named(name, f"{where}.{key}: {dbc.name}")
+        if sum(each.name == name for each in database.messages) > 1:
+            self.fail("message", "is in the DBC twice; rename one of them there")
+        same = [each.name for each in database.messages if each is not entry and each.frame_id == entry.frame_id
+                and each.is_extended_frame == entry.is_extended_frame]
+        if same:
+            self.fail("message", f"has the identifier of {same[0]}, too, so that a frame could be either; correct the "
+                      "DBC")
+        database.check(entry)
+        self.c: Message = entry.c
+        self._check()
         if self.c.is_container:
             self.fail("message", "is a container, which a map cannot join; name a message that carries signals")
         self.signals: dict[str, Signal] = {each.name: each for each in self.c.signals}
 
-    def _check(self, database: Database) -> None:
-        """BadInput for a message that no bus can carry, or that the DBC does not tell from others."""
-        name, length = self.c.name, self.c.length
-        if sum(each.name == name for each in database.messages) > 1:
-            self.fail("message", "is in the DBC twice; rename one of them there")
-        same = [each.name for each in database.messages if each is not self.c and each.frame_id == self.c.frame_id
-                and each.is_extended_frame == self.c.is_extended_frame]
-        if same:
-            self.fail("message", f"has the identifier of {same[0]}, too, so that a frame could be either; correct the "
-                      "DBC")
+    def _check(self) -> None:
+        """BadInput for a message that no bus can carry."""
+        length = self.c.length
         if length > 8 and length not in FD_LENGTHS or length > 8 and not self.c.is_fd:
             self.fail("message", f"has {length} bytes, which {'CAN FD' if self.c.is_fd else 'classic CAN'} cannot "
                       "send; correct the DBC" + ("" if self.c.is_fd else ", or its VFrameFormat for CAN FD"))
@@ -71,7 +74,7 @@ class DbcMessage:
     def fail(self, key: str, text: str, where: str | None = None) -> NoReturn:
         """BadInput that names map, DBC and message; a text that begins with a dot goes on with a signal."""
         space = "" if text.startswith(".") else " "
-        raise BadInput(f"{where or self.where}.{key}: {self.dbc.name}: {self.c.name}{space}{text}")
+        raise BadInput(f"{where or self.where}.{key}: {self.dbc.name}: {self.name}{space}{text}")
 
     def signal(self, name: str, key: str = "name", where: str | None = None) -> Signal:
         """A signal by its name."""
@@ -145,17 +148,33 @@ def start_value(signal: Signal) -> int | float:
     return 0 if value is None else value if isinstance(value, (int, float)) else 0
 
 
-def raw_range(signal: Signal) -> tuple[float, float]:
-    """The least and largest raw value: what the bits can hold, less where the DBC says less."""
+def raw_range(signal: Signal) -> tuple[int | float, int | float]:
+    """The least and largest raw value: what the bits can hold, less where the DBC says less; whole for integers."""
     if signal.is_float:
-        largest = {16: 65504.0, 32: 3.4028234663852886e38}.get(signal.length, 1.7976931348623157e308)
+        largest = LARGEST_FLOATS.get(signal.length, 1.7976931348623157e308)
         return -largest, largest
-    low, high = (-(1 << signal.length - 1), (1 << signal.length - 1) - 1) if signal.is_signed else (
-        0, (1 << signal.length) - 1)
+    low, high = bit_range(signal)
     if signal.minimum is not None and signal.maximum is not None and signal.minimum < signal.maximum:
-        ends = sorted((float(limit) - signal.offset) / signal.scale for limit in (signal.minimum, signal.maximum))
+        ends = sorted(exact_raw(signal, limit) for limit in (signal.minimum, signal.maximum))
         low, high = max(low, round(ends[0])), min(high, round(ends[1]))
-    return float(low), float(high)
+    return low, high
+
+
+def bit_range(signal: Signal) -> tuple[int, int]:
+    """What the bits of a whole number can hold."""
+    half = 1 << signal.length - 1
+    return (-half, half - 1) if signal.is_signed else (0, 2 * half - 1)
+
+
+def exact_raw(signal: Signal, value: float) -> Fraction:
+    """The raw value of a value in the signal's unit, with all digits that are written."""
+    scale, offset = exact(signal.scale), exact(signal.offset)
+    return (exact(value) - offset) / scale
+
+
+def exact(value: float) -> Fraction:
+    """A number as its decimals are written: 0.1 is a tenth."""
+    return Fraction(value) if isinstance(value, int) else Fraction(repr(float(value)))
 
 
 def byte_slice(message: DbcMessage, signal: Signal) -> slice | None:

@@ -11,12 +11,14 @@ from typing import Any
 
 from laconic.can.play.checksums import Checksum, read_checksum
 from laconic.can.play.map_signals import OF_ANGLE, inputs_of, outputs_of, why_unknown
-from laconic.scene.table import Table, read_toml
+from laconic.map_toml import read_map_toml
+from laconic.scene.table import Table
 
 AT_TIMEOUT = ("hold", "zero", "off", "end")
 REMOTE = "remote"
 PAGES = ("in turn", "together")
 MOST_VALUES = 2**64  # of a signal
+EXACT = 2.0**53      # a decimal beyond may have lost digits already
 
 
 @dataclass(frozen=True)
@@ -38,8 +40,8 @@ class Joint:
     signal: str
     model: str                     # input or output; "": a constant
     conversion: Conversion = Conversion()
-    constant: float | None = None  # the signal always has this value
-    wrap: float = 0.0              # raw values wrap at it; 0: they are cut to the signal's range; inf: at its bits
+    constant: int | float | None = None  # the signal always has this value; a whole number stays exact
+    wrap: int | float = 0          # raw values wrap at it; 0: they are cut to the signal's range; inf: at its bits
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,7 @@ class SignalMap:
 
 def read_map(path: Path, wheel_count: int) -> SignalMap:
     """A map for a vehicle with so many wheels; BadInput names the key that is wrong."""
-    table = read_toml(path)
+    table = read_map_toml(path)
     name = table.text("name", path.stem)
     received = tuple(_received(each, wheel_count) for each in table.tables("receive"))
     sent = tuple(_sent(each, wheel_count) for each in table.tables("send"))
@@ -179,7 +181,7 @@ def _input(table: Table, wheel_count: int) -> Joint:
 
 
 def _output(table: Table, wheel_count: int) -> Joint:
-    name, source, constant = table.text("name"), _text(table, "from"), table.number("value", None)
+    name, source, constant = table.text("name"), _text(table, "from"), _constant(table)
     if (constant is None) == (not source):
         table.fail("from", "and value are both given; keep one of them" if source else
                    "is missing; give an output of the model, or value for a constant")
@@ -191,6 +193,14 @@ def _output(table: Table, wheel_count: int) -> Joint:
     conversion, wrap = _conversion(table, source), _wrap(table)
     table.done()
     return Joint(table.location, name, source, conversion, None, wrap)
+
+
+def _constant(table: Table) -> int | float | None:
+    """As it is written: a signal may have more bits than a floating-point number."""
+    given: Any = table.value("value", None, (int, float), "a number")
+    table.number("value", None)  # refuses one that is not finite
+    is_whole = isinstance(given, int) or (given is not None and given.is_integer() and abs(given) < EXACT)
+    return int(given) if is_whole else given
 
 
 def _conversion(table: Table, model: str) -> Conversion:
@@ -211,10 +221,10 @@ def _conversion(table: Table, model: str) -> Conversion:
     return Conversion(scale * sign, table.number("offset", 0.0), gear, counts)
 
 
-def _wrap(table: Table) -> float:
+def _wrap(table: Table) -> int | float:
     value: Any = table.value("wrap", False, (bool, int), "true, or the whole number at which raw values wrap")
     if isinstance(value, bool):
-        return float("inf") if value else 0.0
+        return float("inf") if value else 0
     if not 2 <= value <= MOST_VALUES:
         table.fail("wrap", f"is {value if value < 2 else 'beyond 2^64'}; give true, or a whole number from 2 to 2^64")
-    return float(value)
+    return int(value)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from cantools.database.can.signal import Signal
 
 from laconic.can.play.checksums import COUNTS_TO_14, E2E_COUNTERS, E2E_WIDTHS, SUMS
-from laconic.can.play.map_dbc import DbcMessage, Page, byte_slice, raw_range
-from laconic.can.play.map_file import Conversion, Joint, MessageMap, Received, Sent
+from laconic.can.play.map_dbc import DbcMessage, Page, bit_range, byte_slice, exact, exact_raw, raw_range, start_value
+from laconic.can.play.map_file import EXACT, Conversion, Joint, MessageMap, Received, Sent
 from laconic.can.play.map_signals import OF_ANGLE
 
 TURN_RAD = 2.0 * math.pi
@@ -150,18 +152,22 @@ class Receiver(Protected):
             return {}, "wrong length or page"
         if self.checksum_signal and self.checksum_of(raw, payload) != raw[self.checksum_signal.name]:
             return {}, "wrong checksum"
-        if self.counter_signal and (reason := self._counts(int(raw[self.counter_signal.name]))):
+        if self.counter_signal and (reason := self._counts(self.counter_signal, int(raw[self.counter_signal.name]))):
             return {}, reason
         found = {joint.model: to_model(joint.conversion, joint.model, values[joint.signal])
                  for joint in self.given.joints if joint.signal in values}
         return (found, None) if all(map(math.isfinite, found.values())) else ({}, "a value that is not finite")
 
-    def _counts(self, count: int) -> str | None:
-        """Why a frame with this count is refused; it is the reference for the next one in any case."""
+    def _counts(self, signal: Signal, raw: int) -> str | None:
+        """Why a frame with this count is refused; a count that the counter has is the reference for the next one in any
+        case, and one that it never has is not."""
+        count, counter = raw % (1 << signal.length), self.given.counter
+        if count >= self.modulo:
+            return "impossible count"
         last, self._last = self._last, count
         if last is None:
             return None
-        delta, counter = (count - last) % self.modulo, self.given.counter
+        delta = (count - last) % self.modulo
         if delta == 0:
             return "repeated"
         limit = counter.max_delta if counter else None
@@ -183,24 +189,46 @@ class Sender(Protected):
         self.sent, self.cut = given, Cut()
         for joint in given.joints:
             message.signal(joint.signal, "name", joint.where)
-            if joint.constant is not None and self.raw_of(joint, joint.constant) is None:
-                message.fail("value", f"cannot hold {joint.constant:g} in {joint.signal}; give a value of its range",
-                             joint.where)
+            if joint.constant is not None:
+                self._check_constant(joint, joint.constant)
             if joint.wrap:
                 self._check_wrap(joint, message.signals[joint.signal])
         self.pages = self._pages()
         if given.pages is not None and not any(signal.is_multiplexer for signal in message.signals.values()):
             message.fail("pages", "has no effect on a message without a multiplexer; take it out")
+        self._check_starts()
         self._next_page, self._count = 0, -1
 
     def _check_wrap(self, joint: Joint, signal: Signal) -> None:
         if signal.is_float:
             self.message.fail("wrap", f"has {joint.signal} as a number with a fraction, which does not wrap; take it "
                               "out", joint.where)
-        counts = raw_range(signal)[1] + 1
+        counts = int(raw_range(signal)[1]) + 1
         if math.isfinite(joint.wrap) and joint.wrap > counts:
-            self.message.fail("wrap", f"is {joint.wrap:.0f}, but {joint.signal} holds no more than {counts - 1:.0f}; "
-                              f"give {counts:.0f} or less, or true for where its bits end", joint.where)
+            self.message.fail("wrap", f"is {joint.wrap}, but {joint.signal} holds no more than {counts - 1}; "
+                              f"give {counts} or less, or true for where its bits end", joint.where)
+
+    def _check_constant(self, joint: Joint, value: int | float) -> None:
+        """BadInput for a constant that its signal cannot hold as it is written."""
+        signal = self.message.signals[joint.signal]
+        if isinstance(value, float) and abs(value) >= EXACT and not signal.is_float:
+            self.message.fail("value", f"has {value:.17g} as a decimal for {joint.signal}, which may have lost digits; "
+                              "write it as a whole number, without a point", joint.where)
+        if self.raw_of(joint, value) is None:
+            self.message.fail("value", f"cannot hold {value} in {joint.signal}; give a value of its range", joint.where)
+        near = nearest_constants(signal, value)
+        if len(near) > 1:
+            self.message.fail("value", f"cannot hold {value} in {joint.signal}, whose values are {plain(near[0])} and "
+                              f"{plain(near[1])} there; give one of them", joint.where)
+
+    def _check_starts(self) -> None:
+        """BadInput for a start value of the DBC that the bits of its signal cannot hold."""
+        for name, signal in self.message.signals.items():
+            low, high = raw_range(signal) if signal.is_float else bit_range(signal)
+            start = start_value(signal)
+            if not low <= start <= high or (not signal.is_float and start != int(start)):
+                self.message.fail("message", f"has the start value {start} for {name}, which its {signal.length} bits "
+                                  "cannot hold; correct the DBC")
 
     def _pages(self) -> list[Page]:
         """The pages that carry the joined signals; a constant multiplexer chooses among them."""
@@ -226,14 +254,14 @@ class Sender(Protected):
                                   "correct one of them", joint.where)
         return pages
 
-    def raw_of(self, joint: Joint, value: float) -> int | float | None:
-        """A value in the signal's unit as its raw value; None where it does not fit."""
+    def raw_of(self, joint: Joint, value: int | float) -> int | float | None:
+        """A value in the signal's unit as its nearest raw value; None where it does not fit."""
         signal = self.message.signals[joint.signal]
-        raw = (value - signal.offset) / signal.scale
         low, high = raw_range(signal)
-        if not signal.is_float:
-            raw = round(raw) if math.isfinite(raw) else raw
-        return raw if low <= raw <= high else None
+        raw = exact_raw(signal, value)
+        if not low <= raw <= high:
+            return None
+        return float(raw) if signal.is_float else round(raw)
 
     def payloads(self, read: Callable[[str], float]) -> Iterator[bytes]:
         """The frames of one instant; `read` gives an output of the model by name."""
@@ -261,23 +289,44 @@ class Sender(Protected):
         signal = self.message.signals[joint.signal]
         if joint.constant is not None:
             return self.raw_of(joint, joint.constant) or 0
-        exact = (from_model(joint.conversion, read(joint.model)) - signal.offset) / signal.scale
+        unrounded = (from_model(joint.conversion, read(joint.model)) - signal.offset) / signal.scale
         low, high = raw_range(signal)
-        if not math.isfinite(exact):  # beyond every number, by the map's own factors
+        if not math.isfinite(unrounded):  # beyond every number, by the map's own factors
             self.cut.count += 1
-            end = low if exact < 0.0 else high
-            return end if signal.is_float else int(end)
+            return low if unrounded < 0.0 else high
         if signal.is_float:
-            raw: int | float = exact
+            raw: int | float = unrounded
         else:
             is_count = bool(joint.conversion.counts_per_turn) and OF_ANGLE.match(joint.model) is not None
-            raw = math.floor(exact) if is_count else round(exact)
+            raw = math.floor(unrounded) if is_count else round(unrounded)
         if joint.wrap:
             return wrapped(signal, int(raw), joint.wrap)
         if not low <= raw <= high:
             self.cut.count += 1
             raw = min(max(raw, low), high)
-        return raw if signal.is_float else int(raw)
+        return raw
+
+
+FLOAT_CODES = {16: "<e", 32: "<f", 64: "<d"}
+
+
+def nearest_constants(signal: Signal, value: int | float) -> list[Fraction]:
+    """The value itself where the signal holds it, else those around it. Decimals of a floating-point signal are rounded
+    as in every such number."""
+    raw, scale, offset = exact_raw(signal, value), exact(signal.scale), exact(signal.offset)
+    if not signal.is_float:
+        rawest = {math.floor(raw), math.ceil(raw)}
+        return [each * scale + offset for each in sorted(rawest)]
+    if raw.denominator != 1:
+        return [raw]
+    code = FLOAT_CODES[signal.length]
+    held = Fraction(struct.unpack(code, struct.pack(code, float(raw)))[0])
+    return [raw] if held == raw else sorted({held, 2 * raw - held})
+
+
+def plain(value: Fraction) -> str:
+    """A number as a person writes it."""
+    return str(value.numerator) if value.denominator == 1 else f"{float(value):.12g}"
 
 
 def wrapped(signal: Signal, raw: int, modulo: float) -> int:

@@ -16,7 +16,7 @@ import can
 from laconic.base.paths import built
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.echo import deaf_to_itself
-from laconic.can.rig.errors import CannotReach
+from laconic.can.rig.errors import CannotReach, in_words
 from laconic.can.rig.link import Clock, Link
 from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.socket_line import read_in_chunks
@@ -39,16 +39,19 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
         options["bitrate"] = bitrate
     try:
         bus = deaf_to_itself(can.Bus(interface=interface, channel=channel, **options))
-    except can.CanInterfaceNotImplementedError as error:
-        raise BadInput(f"--interface {interface}: {error}; python-can has {', '.join(sorted(can.VALID_INTERFACES))}"
-                       ) from None
+    except can.CanInterfaceNotImplementedError:
+        raise BadInput(f"--interface {interface}: is not there, or its driver is not installed; python-can has "
+                       f"{', '.join(sorted(can.VALID_INTERFACES))}") from None
     except (can.CanError, OSError, ValueError, TypeError) as error:
         let_go(error)
         if channel is None:
             raise BadInput(f"--interface {interface}: cannot be opened without --channel; give can0, /dev/ttyACM0, "
                            "socket://127.0.0.1:PORT or another one") from None
-        raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus ({error}); check that "
-                          "the node or adapter is there and no other program uses it") from None
+        if not isinstance(error, (can.CanError, OSError)):
+            raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus by these settings; "
+                              "check --channel, --bitrate and --bus-option") from None
+        raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus ({in_words(error)}); "
+                          "check that the node or adapter is there and no other program uses it") from None
     read_in_chunks(bus)
     return bus
 

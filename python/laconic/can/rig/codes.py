@@ -9,7 +9,7 @@ import can
 
 from laconic.can.rig.frames import FrameBox
 from laconic.can.rig.node_library import node_library
-from laconic.errors import BadInput, ResultFails
+from laconic.errors import BadInput, ResultFails, reason_of
 
 KEY_DIGITS = 32
 
@@ -18,9 +18,11 @@ def read_key(path: Path) -> bytes:
     """The key of AES-128 in a file of 32 hexadecimal digits."""
     try:
         text = path.read_text(encoding="ascii").strip()
-    except (OSError, ValueError) as error:
-        raise BadInput(f"--key {path}: cannot be read ({error}); "
-                       f"name a file with {KEY_DIGITS} hexadecimal digits") from None
+    except OSError as error:
+        raise BadInput(f"--key {path}: cannot be read ({reason_of(error)}); name a file with {KEY_DIGITS} hexadecimal "
+                       "digits") from None
+    except ValueError:
+        raise BadInput(f"--key {path}: holds no key; give {KEY_DIGITS} hexadecimal digits") from None
     if not re.fullmatch(rf"[0-9a-fA-F]{{{KEY_DIGITS}}}", text):
         raise BadInput(f"--key {path}: holds no key; give {KEY_DIGITS} hexadecimal digits")
     return bytes.fromhex(text)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import re
 import signal
 
-from laconic.errors import BadInput, LaconicError, ResultFails
+import can
+
+from laconic.errors import BadInput, LaconicError, ResultFails, reason_of
 
 
 class CannotReach(BadInput):
@@ -30,12 +34,25 @@ class BusDied(ResultFails):
     """Sending or receiving failed in the middle of a run."""
 
 
+UNEXPECTED = "its driver received something that it does not understand"
+
+
 def in_words(error: BaseException) -> str:
-    """The message of a library, and after it that of the system error that caused it."""
-    text, last = str(error) or type(error).__name__, error
-    while last.__cause__ is not None:
-        last = last.__cause__
-    return text if str(last) in text else f"{text}: {last}"
+    """The system's reason, or what a driver states; an exception of Python's own has no words for a user."""
+    chain = [error]
+    while (cause := chain[-1].__cause__) is not None:
+        chain.append(cause)
+    for each in reversed(chain):
+        if isinstance(each, OSError) and not isinstance(each, can.CanError):
+            return _of_system(each)
+    return next((str(each.args[0]) for each in chain if isinstance(each, can.CanError) and each.args), UNEXPECTED)
+
+
+def _of_system(error: OSError) -> str:
+    """By the number of the error; a library may have it in its own text alone."""
+    found = re.search(r"\[Errno (\d+)\]", str(error))
+    number = error.errno or (int(found[1]) if found else 0)
+    return os.strerror(number).lower() if number > 0 else reason_of(error)
 
 
 class Interrupted(LaconicError):

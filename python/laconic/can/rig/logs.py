@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -14,6 +13,9 @@ import can
 from laconic.base.outputs import make_folder
 from laconic.can.rig.link import Clock
 from laconic.errors import BadInput, reason_of
+from laconic.robot.logs.blf_log import header_of
+from laconic.robot.logs.can_frames import LoggedFrame, read_frames
+from laconic.text_file import text_of_file
 
 
 class Heard(Protocol):
@@ -83,8 +85,8 @@ def open_log(path: Path) -> can.io.generic.MessageWriter:
         with writable(path), read_by_someone(path):
             make_folder(path.parent)
             return can.Logger(str(path))
-    except ValueError as error:
-        raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None
+    except ValueError:
+        raise BadInput(f"--log {path}: no log has this ending; use a name that ends in .blf or .asc") from None
 
 
 def stamped(path: Path, writer: can.io.generic.MessageWriter, link: Heard,
@@ -107,55 +109,17 @@ def stamped(path: Path, writer: can.io.generic.MessageWriter, link: Heard,
     return write
 
 
-def read_log(path: Path) -> list[can.Message]:
+def read_log(path: Path) -> list[LoggedFrame]:
     """All frames of a log; BadInput for one that is broken or cut off."""
-    try:
-        with doubts_are_errors(), can.LogReader(str(path)) as reader:
-            check_whole(path, reader)
-            return list(reader)
-    except OSError as error:
-        raise BadInput(f"{path}: {reason_of(error)}; give a .blf or .asc file") from None
-    except BadInput:
-        raise
-    except Exception as error:  # a parser may raise any exception on unexpected bytes
-        raise BadInput(f"{path}: cannot be read as a log ({str(error) or type(error).__name__}); give a .blf or .asc "
-                       "file as it was written") from None
-
-
-class Doubts(logging.Handler):
-    """Raises where a reader would leave out frames and only write a warning to its own log."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Raises the warning as an error."""
-        raise ValueError(record.getMessage())
-
-
-@contextmanager
-def doubts_are_errors() -> Iterator[None]:
-    """Every warning of python-can in this context is an error."""
-    logger, handler = logging.getLogger("can"), Doubts(logging.WARNING)
-    propagate, logger.propagate = logger.propagate, False
-    logger.addHandler(handler)
-    try:
-        yield
-    finally:
-        logger.removeHandler(handler)
-        logger.propagate = propagate
-
-
-def check_whole(path: Path, reader: can.io.generic.MessageReader) -> None:
-    """BadInput for a truncated BLF, which python-can reads without a warning."""
-    stated, actual = getattr(reader, "file_size", 0), path.stat().st_size
-    if isinstance(reader, can.BLFReader) and actual < stated:
-        raise BadInput(f"{path}: is cut off: {actual} of {stated} bytes are there; copy it again")
+    return read_frames(path).frames
 
 
 def was_closed(path: Path) -> bool:
     """Whether the program that wrote a log has closed it: one that was killed leaves out frames."""
     if path.suffix.lower() == ".blf":
-        with can.BLFReader(path) as reader:
-            return reader.file_size >= path.stat().st_size
+        data = path.read_bytes()
+        return header_of(data).file_size >= len(data)
     if path.suffix.lower() != ".asc":
         return True
-    text = path.read_bytes().rstrip().lower()
-    return b"begin triggerblock" not in text or text.endswith(b"end triggerblock")
+    lines = [line.strip().lower() for line in text_of_file(path, "a log").lines if line.strip()]
+    return not any(line.startswith("begin triggerblock") for line in lines) or lines[-1] == "end triggerblock"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 import can
@@ -11,13 +13,14 @@ from laconic.can.rig.buses import next_channel
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.judge import link_verdict, signal_verdicts
 from laconic.can.rig.link import Link
-from laconic.can.rig.logs import read_log, was_closed
+from laconic.can.rig.logs import was_closed
 from laconic.can.rig.scaled import Comparison
 from laconic.can.rig.session import Effect, Follower
 from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.can.rig.wire import wire
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
+from laconic.robot.logs.can_frames import LoggedFrame, read_frames
 from laconic.scene import Scene
 
 
@@ -31,12 +34,16 @@ class LogPlayer:
         self.comparison = Comparison(scene.wheel_count)
         self.wrong_commands = 0
         self.running = False
+        self.odd: Counter[str] = Counter()   # frames with the identifier of a message and another length or format
         self._follower = Follower(link.library)
 
     def take(self, message: can.Message) -> None:
         """One frame of the log."""
         frame = wire().by_offset.get(message.arbitration_id - self.id_base)
-        if frame is None or len(message.data) != frame.length:
+        if frame is None:
+            return
+        if len(message.data) != frame.length or message.is_fd != frame.fd:
+            self.odd[frame.name] += 1
             return
         if not frame.from_rig:
             received = self.link.take(message)
@@ -78,9 +85,25 @@ class LogPlayer:
             self.plant.run(self.plant.core.input(self.row), 1)
 
 
-def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, float]) -> Judgement:
-    """The verdicts of a recorded lockstep run with scaled frames."""
-    messages = read_log(path)
+def frames_of_node(path: Path, frames: Sequence[LoggedFrame], id_base: int, channel: str | None) -> list[LoggedFrame]:
+    """The frames of a log that a node or its rig may have sent: data frames with 11 bits on one channel. BadInput where
+    these come on several channels and none is given, or not on the one that is."""
+    found = [frame for frame in frames if not (frame.is_extended_id or frame.is_remote_frame or frame.is_error_frame)
+             and frame.arbitration_id - id_base in wire().by_offset]
+    channels = sorted({str(frame.channel) for frame in found})
+    if channel is None and len(channels) > 1:
+        raise BadInput(f"--replay {path}: frames at ID base 0x{id_base:X} come on the channels "
+                       f"{', '.join(channels[:-1])} and {channels[-1]}; give --channel {channels[0]}, or another one")
+    if channel is not None and channels and channel not in channels:
+        raise BadInput(f"--channel {channel}: {path} has the node's frames on {' and '.join(channels)}; give it")
+    return [frame for frame in found if channel in (None, str(frame.channel))]
+
+
+def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, float],
+              channel: str | None = None) -> Judgement:
+    """The verdicts of a recorded lockstep run with scaled frames; `channel`: of the bus in the log, None: the one."""
+    recorded = read_frames(path)
+    messages = frames_of_node(path, recorded.frames, id_base, channel)
     with can.Bus(interface="virtual", channel=next_channel()) as nowhere:
         link = Link(nowhere, id_base)
         player = LogPlayer(scene, id_base, link)
@@ -95,5 +118,7 @@ def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, floa
         judgement.add(Verdict("commands", player.wrong_commands == 0, f"{player.wrong_commands} with a wrong CRC"))
         if not was_closed(path):
             judgement.add(Verdict("log", False, "was never closed: frames may be missing at its end"))
-        judgement.figures |= {"frames": len(messages), "steps": player.plant.steps}
+        judgement.notes += [*recorded.remarks, *(f"{count} frames of {name} left out: of another length or format"
+                                                 for name, count in player.odd.items())]
+        judgement.figures |= {"frames": len(recorded.frames), "steps": player.plant.steps}
     return judgement

@@ -10,6 +10,7 @@ import numpy as np
 
 from laconic.can.rig.parameters import Parameter
 from laconic.can.rig.wire import Frame
+from laconic.core.encoders import signed
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors, values_of
 from laconic.errors import BadInput
@@ -87,7 +88,7 @@ def values_of_frame(twin: Twin, frame: Frame, part: int) -> dict[str, float]:
         return {"acceleration_x": along, "acceleration_y": across, "yaw_rate": shown.imu_yaw_rate_rad_per_s}
     turns = plant.core.lib.laconic_encoder_turns(
         plant.core.ffi.addressof(twin.c.encoder[part]), twin.c.settings.encoder[part].counts_per_turn)
-    return {"count": int(shown.encoder_count[part]), "index_count": (turns + 2**15) % INDEX_TURNS - 2**15}
+    return {"count": int(signed(shown.encoder_count)[part]), "index_count": (turns + 2**15) % INDEX_TURNS - 2**15}
 
 
 def wrap_of(twin: Twin) -> int:
@@ -109,4 +110,5 @@ def raw_row(sensors: Sensors, held: Any) -> np.ndarray:
     """The numbers of raw_imu and raw_encoder, in their order, after a step with this input."""
     shown = sensors.read(held)
     return np.concatenate([shown.acceleration_body_m_per_s2, shown.imu_acceleration_m_per_s2,
-                           [shown.imu_yaw_rate_rad_per_s], shown.encoder_count]).astype(sensors.plant.core.dtype)
+                           [shown.imu_yaw_rate_rad_per_s], signed(shown.encoder_count)]).astype(
+                               sensors.plant.core.dtype)

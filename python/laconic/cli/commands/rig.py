@@ -87,9 +87,10 @@ def drive(scene: Scene, options: Options) -> int:
 
     began = time.perf_counter()
     if options.replay is not None:
-        goes_with("--replay", "--lockstep", "--id-base", "--method", "--real", "--tolerance", "--junit", "--json")
+        goes_with("--replay", "--lockstep", "--channel", "--id-base", "--method", "--real", "--tolerance", "--junit",
+                  "--json")
         judgement = judge_log(options.replay, scene, read_id_base(options.id_base, scene),
-                              read_tolerances(options.tolerances, scene))
+                              read_tolerances(options.tolerances, scene), options.channel)
     else:
         judgement = run(scene, options)
     if options.junit:

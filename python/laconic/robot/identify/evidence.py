@@ -76,4 +76,6 @@ def like(logs: Sequence[Log], log: Log, yaw_rate: float) -> Log:
     """A made-up run with the sensors that the others have."""
     if all(each.pose is None and each.yaw_rate_rad_per_s is not None for each in logs):
         return replace(log, pose=None, yaw_rate_rad_per_s=np.full(len(log.time_s), yaw_rate))
+    if log.pose is not None and all(each.pose is not None and not each.has_heading for each in logs):
+        return replace(log, pose=log.pose * np.array([1.0, 1.0, np.nan]))
     return log

@@ -24,6 +24,7 @@ from laconic.robot.identify.rolling_evidence import (
 )
 from laconic.robot.logs import Log
 from laconic.robot.replay.held_wheels import Held, hold
+from laconic.robot.replay.placing import fitted_to, start_of
 from laconic.robot.replay.steady_currents import axles_of, steady_parts
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -128,7 +129,7 @@ class GroundEvidence(RollingEvidence):
             if axles is not None and log.current_A is not None:
                 load, speed, current = steady_parts(log, held)
                 off = (axles.current_A(load, speed) - current) / max(float(np.abs(current).mean()), 0.1)
-            found.append((held.at(log.time_s, log.needs("pose", "identify")[0]), off))
+            found.append((fitted_to(log, held.at(log.time_s, start_of(log))), off))
         return found
 
     def _held(self, vehicle: Vehicle, log: Log) -> Held:

@@ -18,10 +18,12 @@ from laconic.errors import BadInput
 from laconic.robot.identify.parameter import Vehicle
 from laconic.robot.logs import Log
 from laconic.robot.replay.measures import LEAST_LENGTH_M, path_length
+from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import path_of, rolling_of
 
 POINTS = 120      # of a path that are compared
 STRETCHES = 24    # of a run whose errors count as independent
+SHORT = 0.2       # of the usual length: a shorter stretch has no clear direction
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,13 @@ class Run:
     taken: np.ndarray       # samples that are compared
     cuts: np.ndarray        # samples between which a stretch lies
     scale: float            # 1 / (length · √points)
+    has_heading: bool = True
+
+    def path(self, moved: np.ndarray) -> np.ndarray:
+        """The path of displacements, from the true first pose; where positions alone are known, fitted to them."""
+        if self.has_heading:
+            return path_of(moved, self.pose[0])
+        return fitted(path_of(moved, np.zeros(3)), self.taken, self.pose[self.taken, :2])
 
 
 class RollingEvidence:
@@ -50,35 +59,35 @@ class RollingEvidence:
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Distances x, y between rolled and true path."""
         rolling = rolling_of(self._core, vehicle, self._path)
-        return [path_residual(run, path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0]))
-                for run in self.runs]
+        return [path_residual(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch: its error, carried to all points of the path after it, times the Jacobian there."""
         rolling = rolling_of(self._core, vehicle, self._path)
         found = []
         for run, jacobian in zip(self.runs, jacobians, strict=True):
-            path = path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0])
+            path = run.path(rolling.moved(run.rotation_rad, run.point))
             found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
         return found
 
     def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Of each stretch of each run: displacement ahead and to the left, turn."""
         rolling = rolling_of(self._core, vehicle, self._path)
-        return [stretch_errors(run, path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0]))
-                for run in self.runs]
+        return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
 
 
 def run_of(log: Log) -> Run:
     """BadInput for a log without a true pose, or whose true path has no length."""
     pose = log.needs("pose", "identify")
-    length = path_length(log.time_s, pose)
+    seen = log.seen
+    length = path_length(log.time_s[seen], pose[seen])
     if not length > LEAST_LENGTH_M:
         raise BadInput(f"{log.path}: its true path has no length; give runs in which the robot moves")
-    last = len(log.time_s) - 1
-    taken = np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])
-    cuts = np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))
-    return Run(log.rotation_rad(), pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))))
+    last = len(seen) - 1
+    taken = seen[np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])]
+    cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
+    return Run(log.rotation_rad(), pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
+               log.has_heading)
 
 
 def path_residual(run: Run, path: np.ndarray) -> np.ndarray:
@@ -104,7 +113,21 @@ def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarr
 
 def stretch_errors(run: Run, path: np.ndarray) -> np.ndarray:
     """What the motion of each stretch is off by, in the body's frame at its beginning."""
-    return _relative(path, run.cuts) - _relative(run.pose, run.cuts)
+    true = run.pose if run.has_heading else with_headings(run.pose, path, run.cuts)
+    return _relative(path, run.cuts) - _relative(true, run.cuts)
+
+
+def with_headings(pose: np.ndarray, path: np.ndarray, cuts: np.ndarray) -> np.ndarray:
+    """Positions with headings at the cuts: those of a path, turned as each of its stretches must be turned to go where
+    the positions go. A stretch that is too short to have a direction is turned as those around it."""
+    own, other = np.diff(path[cuts, :2], axis=0), np.diff(pose[cuts, :2], axis=0)
+    turn = np.arctan2(own[:, 0] * other[:, 1] - own[:, 1] * other[:, 0], (own * other).sum(axis=1))
+    size = np.minimum(np.hypot(*own.T), np.hypot(*other.T))
+    clear = np.flatnonzero(size > SHORT * np.median(size)) if size.any() else np.zeros(0, int)
+    turn = np.interp(np.arange(len(turn)), clear, np.unwrap(turn[clear])) if len(clear) else np.zeros(len(turn))
+    found = pose.copy()
+    found[cuts, 2] = path[cuts, 2] + np.append(turn, turn[-1:])
+    return found
 
 
 def _relative(pose: np.ndarray, cuts: np.ndarray) -> np.ndarray:

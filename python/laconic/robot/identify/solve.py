@@ -177,8 +177,9 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
     def covariance(rows: np.ndarray) -> np.ndarray:
         # a fit of whole paths does not make its stretches' errors smaller; sums over blocks it does
         correction = 1.0 if rows is single else len(rows) / max(len(rows) - count, 1)
-        of_z = inverse @ (correction * rows.T @ rows / scale**4 + np.eye(count)) @ inverse
-        return parameters.factor @ of_z @ parameters.factor.T
+        roots = np.vstack([np.sqrt(correction) / scale**2 * rows, np.eye(count)]) @ inverse.T @ parameters.factor.T
+        found: np.ndarray = roots.T @ roots  # never below 0, however nearly two parameters are one
+        return found
 
     def half_widths(rows: np.ndarray) -> np.ndarray:
         freedom = max(len(rows) - count, 1)

@@ -14,6 +14,7 @@ from laconic.robot.identify.solve import Fit, fit
 from laconic.robot.identify.words import in_words
 from laconic.robot.identify.words_of_errors import of_errors
 from laconic.robot.logs import Log
+from laconic.robot.logs.log import remarks_of
 from laconic.robot.logs.read import for_wheels
 from laconic.robot.replay.measures import RunErrors
 from laconic.robot.replay.predicted import predict
@@ -56,7 +57,7 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
                   errors_of(fitted, runs, parameters), left, errors_of(fitted, others, parameters) if others else [],
                   errors_of(scene, others, parameters) if others else [], controller,
                   MEASURE[kind_of(runs, parameters)])
-    return replace(study, words=[*study.words, *of_errors(study, others)])
+    return replace(study, words=[*remarks_of([*runs, *others]), *study.words, *of_errors(study, others)])
 
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:

@@ -169,7 +169,7 @@ def _candidate(scene: Scene, vehicle: dict[str, object], parameters: Parameters,
 
 
 def _length(log: Log) -> float:
-    return 1.0 if log.pose is None else path_length(log.time_s, log.pose)
+    return 1.0 if log.pose is None else path_length(log.time_s[log.seen], log.pose[log.seen])
 
 
 def _usual_length(runs: Sequence[Log]) -> float:

@@ -8,18 +8,20 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput, nearest_of
+from laconic.map_toml import read_map_toml
 from laconic.robot.logs.log import PER_WHEEL, POINTS
 from laconic.robot.logs.units import ANGLE, OF_QUANTITY, TICK
-from laconic.scene.table import Table, read_toml
+from laconic.scene.table import Table
 
 MAPS = Path(__file__).with_name("maps")
 FORMATS = ("text", "can")
 DECIMALS = (".", ",")
 OF_TEXT = ("separator", "header_lines", "names_line", "decimal", "time")
-OF_CAN = ("dbc", "group")
+OF_CAN = ("dbc", "group", "channel")
 YAW_RATE = "yaw_rate"
 QUANTITIES = (*PER_WHEEL, "pose", YAW_RATE)
 KINDS = {"wheel_angle": ("absolute", "increments"), "pose": ("absolute", "increments", "body-increments")}
+MOST_WHEELS = 1000
 NUMBERED = "#"  # in a column's name: one column for each wheel, counted from 1
 
 Column = str | int
@@ -44,6 +46,8 @@ class Quantity:
     is_optional: bool = False
     sign_from_set_speed: bool = False
     point: str = "origin"
+    wrap: float | bool | None = None   # where the column begins again; True: after one turn, False: never, None: unsaid
+    channel: str = ""                  # CAN: of the bus that the frames are from; empty: the only one
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,7 @@ class ColumnMap:
     dbc: str = ""
     group: str = ""                    # CAN: signal that says which wheels a frame is of
     recognise: dict[str, Any] = field(default_factory=dict)
+    channel: str = ""                  # CAN: of the bus that all frames are from, unless a quantity names its own
 
 
 def project_maps() -> list[ColumnMap]:
@@ -82,7 +87,7 @@ def named_map(given: Path) -> Path:
 
 def read_map(path: Path) -> ColumnMap:
     """A column map; BadInput names the file and the key that is wrong."""
-    table = read_toml(path)
+    table = read_map_toml(path)
     form = table.choice("format", FORMATS, "text")
     _refuse_keys_of_others(table, form)
     name = table.text("name", path.stem)
@@ -90,7 +95,7 @@ def read_map(path: Path) -> ColumnMap:
     header_lines = table.whole("header_lines", 1)
     names_line = table.whole("names_line", min(1, header_lines))
     decimal = table.choice("decimal", DECIMALS, ".")
-    dbc, group = table.text("dbc", ""), table.text("group", "")
+    dbc, group, channel = table.text("dbc", ""), table.text("group", ""), _channel(table, form)
     if form == "can" and not dbc:
         table.fail("dbc", "is missing; give the DBC file that names the signals of a CAN log")
     metadata = _metadata(table)
@@ -99,14 +104,14 @@ def read_map(path: Path) -> ColumnMap:
     for each in QUANTITIES:
         if table.has(each):
             inner = table.table(each)
-            found = _yaw_rate(inner) if each == YAW_RATE else _quantity(inner, each, count)
+            found = _yaw_rate(inner, form) if each == YAW_RATE else _quantity(inner, each, count, form)
             quantities[each] = found
             if each in PER_WHEEL and not found.first and not _is_numbered(found.columns):
                 count = count or len(found.columns)
     recognise = _recognise(table)
     table.done()
-    if len(separator) != 1:
-        table.fail("separator", f"is {separator!r}; give one character")
+    if len(separator) != 1 or separator == '"':
+        table.fail("separator", f"is {separator!r}; give one character, which is not a quotation mark")
     if separator == decimal:
         table.fail("decimal", f"is {decimal!r}, which separates the columns, too; give the log's own separator")
     if not 0 <= names_line <= header_lines:
@@ -115,7 +120,7 @@ def read_map(path: Path) -> ColumnMap:
         raise BadInput(f"{path}: {QUANTITIES[1]}: is missing; give the columns of at least one of "
                        f"{', '.join(QUANTITIES)}")
     found_map = ColumnMap(path, name, form, separator, header_lines, names_line, decimal, quantities, metadata, dbc,
-                          group, recognise)
+                          group, recognise, channel)
     _check_columns(table, found_map)
     return found_map
 
@@ -126,6 +131,16 @@ def _refuse_keys_of_others(table: Table, form: str) -> None:
         if table.has(key):
             table.fail(key, f'has a meaning only with format = "{"text" if form == "can" else "can"}"; take it out, or '
                        "give that format")
+
+
+def _channel(table: Table, form: str) -> str:
+    """The channel of a CAN log as it is written there: a number, or a name such as can0."""
+    value = table.value("channel", "", (str, int), "the channel of the log, such as 1 or can0")
+    if table.has("channel") and form != "can":
+        table.fail("channel", 'has a meaning only with format = "can"; take it out, or give that format')
+    if table.has("channel") and value == "":
+        table.fail("channel", "is empty; give the channel of the log, such as 1 or can0, or take it out")
+    return str(value)
 
 
 def _metadata(table: Table) -> str:
@@ -150,22 +165,36 @@ def _time(table: Table, form: str) -> Quantity:
     inner = table.table("time", required=True)
     column = _column(inner, "column")
     unit, scale = _units(inner, "time", 1), inner.number("scale", 1.0)
+    wrap = _wrap(inner, (int, float))
     inner.done()
     if not scale > 0.0:
         inner.fail("scale", f"is {scale:g}; give a factor above 0, or leave it out")
-    return Quantity("time", (column,), unit, (scale,))
+    return Quantity("time", (column,), unit, (scale,), wrap=wrap)
 
 
-def _yaw_rate(table: Table) -> Quantity:
+def _wrap(table: Table, kinds: tuple[type, ...]) -> float | bool | None:
+    """Where a column begins again, in its own numbers."""
+    what = "the number at which the column begins again" + (
+        ", true for one turn, or false where it never does" if bool in kinds else "")
+    value: float | bool | None = table.value("wrap", None, kinds, what)
+    if value is None or isinstance(value, bool):
+        return value
+    wrap = float(table.number("wrap"))
+    if not wrap > 0.0:
+        table.fail("wrap", f"is {wrap:g}; give the number at which the column begins again, such as 65536 or 360")
+    return wrap
+
+
+def _yaw_rate(table: Table, form: str) -> Quantity:
     """Of a gyro: one column."""
     column, unit, sign = _column(table, "column"), _units(table, YAW_RATE, 1), table.number("sign", 1.0)
     scale, offset = table.number("scale", 1.0), table.number("offset", 0.0)
     if abs(sign) != 1.0 or scale == 0.0:
         table.fail("scale" if scale == 0.0 else "sign", "holds no factor that keeps the values; give sign 1 or -1, "
                    "and a scale that is not 0")
-    is_optional = table.flag("optional", False)
+    is_optional, channel = table.flag("optional", False), _channel(table, form)
     table.done()
-    return Quantity(YAW_RATE, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional)
+    return Quantity(YAW_RATE, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional, channel=channel)
 
 
 def _column(table: Table, key: str) -> Column:
@@ -180,22 +209,27 @@ def _checked(table: Table, key: str, value: Any) -> Column:
     return value
 
 
-def _quantity(table: Table, name: str, count: int | None) -> Quantity:
-    columns, first = _columns(table, name, 3 if name == "pose" else count)
+def _quantity(table: Table, name: str, count: int | None, form: str) -> Quantity:
+    columns, first = _columns(table, name, count)
     length = len(columns) if columns and not _is_numbered(columns) else None
     scales = _each(table, "scale", length, 1.0)
     signs = _each(table, "sign", length, 1.0)
     if any(abs(sign) != 1.0 for sign in signs):
         table.fail("sign", "holds a number that is neither 1 nor -1; use scale for other factors")
+    if len(scales) != len(signs) and 1 not in (len(scales), len(signs)):
+        table.fail("signs", f"has {len(signs)} entries, scales {len(scales)}; give as many")
     factors = _product(scales, signs)
     if 0.0 in scales:
         table.fail("scale", "is 0, which would make every value the same; give the column's factor, or leave it out")
     kind = table.choice("kind", KINDS.get(name, ("absolute",)), "absolute")
     given = table.numbers("wheels", length) if table.has("wheels") else ()
     wheels = tuple(int(each) for each in given)
-    if len(set(wheels)) < len(wheels) or min(wheels, default=1) < 1 or wheels != given:
+    if len(set(wheels)) < len(wheels) or min(wheels, default=1) < 1 or wheels != given \
+            or max(wheels, default=1) > MOST_WHEELS:
         table.fail("wheels", f"is {[*map(plain_number, given)]}; give each wheel of the scene once, counted from 1")
-    units = _units(table, name, 3 if name == "pose" else 1)
+    if name == "pose" and len(columns) == 2 and kind == "body-increments":
+        table.fail("columns", "has 2 entries; give 3, as the frame of the sample before needs a heading")
+    units = _units(table, name, len(columns) if name == "pose" else 1)
     ticks, gear = _figure(table, "ticks_per_turn"), _figure(table, "gear_ratio")
     if TICK in units and ticks is None:
         table.fail("ticks_per_turn", "is missing; ticks need how many of them are one turn of the encoder")
@@ -203,7 +237,8 @@ def _quantity(table: Table, name: str, count: int | None) -> Quantity:
         name, columns, units, factors, _each(table, "offset", length, 0.0), kind, ticks,
         1.0 if gear is None else gear, wheels, first, table.flag("optional", False),
         table.flag("sign_from_set_speed", False) if name == "current" else False,
-        table.choice("point", POINTS, "origin") if name == "pose" else "origin")
+        table.choice("point", POINTS, "origin") if name == "pose" else "origin",
+        _wrap(table, (bool, int, float)) if name == "wheel_angle" else None, _channel(table, form))
     table.done()
     return found
 
@@ -223,7 +258,10 @@ def _columns(table: Table, name: str, count: int | None) -> tuple[tuple[Column, 
                        "number")
         return (values,), 0
     columns = tuple(_checked(table, "columns", value) for value in values)
-    if not columns or len(columns) != (count or len(columns)):
+    if name == "pose":
+        if len(columns) not in (2, 3):
+            table.fail("columns", f"has {len(columns)} entries; give 3, of x, y and heading, or 2, of x and y")
+    elif not columns or len(columns) != (count or len(columns)):
         table.fail("columns", f"has {len(columns)} entries; give {count or 'one for each wheel'}")
     for number, column in enumerate(columns):
         if column in columns[:number]:
@@ -257,14 +295,16 @@ def _product(one: tuple[float, ...], other: tuple[float, ...]) -> tuple[float, .
 
 def _figure(table: Table, key: str) -> Figure | None:
     value = table.value(key, None, (int, float, str), "a number, or the name of a row of the metadata file")
-    if isinstance(value, (int, float)) and not value > 0.0:
-        table.fail(key, f"is {value:g}; give a number above zero")
+    if isinstance(value, (int, float)):
+        table.number(key)  # refuses one that is not finite
+        if not value > 0.0:
+            table.fail(key, f"is {value:g}; give a number above zero")
     return value
 
 
 def _units(table: Table, name: str, length: int) -> tuple[str, ...]:
-    allowed = [set(units) | ({TICK} if name == "wheel_angle" else set()) for units in OF_QUANTITY[name]]
-    default = [next(iter(units)) for units in OF_QUANTITY[name]]
+    allowed = [set(units) | ({TICK} if name == "wheel_angle" else set()) for units in OF_QUANTITY[name][:length]]
+    default = [next(iter(units)) for units in OF_QUANTITY[name][:length]]
     key = "units" if length > 1 else "unit"
     given = list(table.texts(key, default)) if length > 1 else [table.text(key, default[0])]
     if len(given) != length:

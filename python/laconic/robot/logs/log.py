@@ -27,12 +27,24 @@ class Log:
     wheel_speed_rad_per_s: np.ndarray | None = None
     current_A: np.ndarray | None = None
     voltage_V: np.ndarray | None = None
-    pose: np.ndarray | None = None          # true x, y [m], heading [rad, unwrapped] in the world
+    pose: np.ndarray | None = None          # true x, y [m], heading [rad, unwrapped, NaN: not recorded] in the world
     pose_point: str = "origin"              # which point of the vehicle the pose is of, one of POINTS
     yaw_rate_rad_per_s: np.ndarray | None = None  # of a gyro
     is_ordered: bool = False                # the map says which wheel of the scene each column is of
     moved: np.ndarray | None = None         # the displacements that the log has instead of a pose, summed: x, y, angle
     names: dict[str, str] = field(default_factory=dict)  # quantity → how the log calls its columns, for messages
+    pose_rows: np.ndarray | None = None     # the samples whose pose was recorded, None: all; others are between two
+    remarks: tuple[str, ...] = ()           # what was left out of the file, or filled in
+
+    @property
+    def seen(self) -> np.ndarray:
+        """The samples whose pose was recorded."""
+        return np.arange(len(self.time_s)) if self.pose_rows is None else self.pose_rows
+
+    @property
+    def has_heading(self) -> bool:
+        """Whether the true pose has a heading: GPS and total stations have positions alone."""
+        return self.pose is not None and not bool(np.isnan(self.pose[:, 2]).any())
 
     @property
     def session(self) -> str:
@@ -64,6 +76,11 @@ def wheels_of(log: Log) -> int:
     values = (getattr(log, name) for name in ("wheel_angle_rad", "wheel_speed_rad_per_s", "set_speed_rad_per_s",
                                               "current_A", "voltage_V"))
     return next((value.shape[1] for value in values if value is not None), 0)
+
+
+def remarks_of(logs: Sequence[Log]) -> list[str]:
+    """What was left out of the files or filled in, each with the name of its run."""
+    return [f"{name}: {remark}" for name, log in zip(run_names(logs), logs, strict=True) for remark in log.remarks]
 
 
 def counted(number: int, what: str) -> str:

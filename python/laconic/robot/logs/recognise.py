@@ -14,6 +14,8 @@ from laconic.robot.logs.read import read_log
 from laconic.robot.logs.text_table import text_of
 
 ENDINGS = (".csv", ".csv.gz", ".txt", ".blf", ".asc")
+OF_CAN = (*ENDINGS[3:], ".log", ".trc", ".asc.gz", ".blf.gz", ".log.gz", ".trc.gz")
+OF_TEXT = ENDINGS[:3]
 
 
 def natural(path: Path) -> list[object]:
@@ -25,7 +27,8 @@ def gather_logs(given: Sequence[Path], map_path: Path | None = None) -> tuple[li
     """(every run, files of folders that are none); a file that was named itself must be a run."""
     maps = [read_map(map_path)] if map_path else project_maps()
     logs, skipped = [], []
-    for path in files_of(given):
+    endings = ENDINGS if map_path is None else OF_CAN if maps[0].format == "can" else OF_TEXT
+    for path in files_of(given, endings):
         if (columns := map_for(path, maps, is_given=map_path is not None)) is None:
             if path in given:
                 raise unknown(path, maps)
@@ -44,18 +47,22 @@ def gather_logs(given: Sequence[Path], map_path: Path | None = None) -> tuple[li
     return logs, skipped
 
 
-def files_of(given: Sequence[Path]) -> list[Path]:
+def files_of(given: Sequence[Path], endings: tuple[str, ...] = ENDINGS) -> list[Path]:
     """Files as they are named, and those of folders with the ending of a log, sorted by the numbers in their names."""
     found: list[Path] = []
     for path in given:
         if exists(path) and path.is_dir():
-            inside = [each for each in path.rglob("*") if each.is_file() and each.name.lower().endswith(ENDINGS)]
+            inside = [each for each in path.rglob("*") if each.is_file() and each.name.lower().endswith(endings)]
             if not inside:
-                raise BadInput(f"{path}: holds no CSV file, BLF or ASC file; give a folder with recorded runs")
+                raise BadInput(f"{path}: holds no {_in_words(endings)}; give a folder with recorded runs")
             found += sorted(inside, key=natural)
         else:
             found.append(path)
     return list(dict.fromkeys(found))
+
+
+def _in_words(endings: tuple[str, ...]) -> str:
+    return {OF_CAN: "BLF, ASC, candump or TRC file", OF_TEXT: "CSV file"}.get(endings, "CSV file, BLF or ASC file")
 
 
 def map_for(path: Path, maps: Sequence[ColumnMap], *, is_given: bool) -> ColumnMap | None:
@@ -70,7 +77,7 @@ def _names(path: Path, columns: ColumnMap) -> list[str]:
     if columns.format == "can" or not columns.recognise.get("names"):
         return []
     try:
-        lines = text_of(path).splitlines()[: columns.header_lines]
+        lines = text_of(path).lines[: columns.header_lines]
     except BadInput:
         return []
     return [name.strip().strip('"') for line in lines for name in line.split(columns.separator)]
@@ -79,7 +86,7 @@ def _names(path: Path, columns: ColumnMap) -> list[str]:
 def unknown(path: Path, maps: Sequence[ColumnMap]) -> BadInput:
     """Why a file is no log: it cannot be read, or no map knows it."""
     try:
-        if not text_of(path).strip():
+        if not text_of(path).text.strip():
             return BadInput(f"{path}: is empty, so it has no samples; give a recorded run")
     except BadInput as reason:
         return reason

@@ -1,23 +1,26 @@
-"""A text log as a table of numbers; whatever is no number is one line that names the file's line."""
+"""A text log as a table of numbers; whatever is no number is one line that names the file's line.
+
+A blank cell is a value that was not recorded on that line, as in topics that were joined by their times; it becomes
+NaN. So does NaN itself where all columns of a quantity have it.
+"""
 
 from __future__ import annotations
 
 import csv
-import gzip
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.errors import BadInput, nearest_of
 from laconic.robot.logs.column_map import Column, ColumnMap
+from laconic.text_file import TextOfFile, text_of_file
 
-GZIP = b"\x1f\x8b"
 LONGEST_SHOWN = 40
 MOST_LISTED = 20
-UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+WANTED = "a recorded run as CSV"
 
 
 @dataclass(frozen=True)
@@ -29,6 +32,16 @@ class TextTable:
     rows: list[list[str]]
     lines: list[int]
     decimal: str = "."
+    remarks: tuple[str, ...] = ()
+
+    def indices_of(self, columns: Sequence[Column], quantity: str) -> list[int]:
+        """Where columns stand, from 0; BadInput names the quantity that needs them."""
+        found = [self.index_of(column, quantity) for column in columns]
+        for number, index in enumerate(found):
+            if index in found[:number]:
+                raise BadInput(f"{self.path}: {quantity} takes column {index + 1} by its name and by its number; give "
+                               "each column once in the map")
+        return found
 
     def index_of(self, column: Column, quantity: str) -> int:
         """Where a column stands, from 0; BadInput names the quantity that needs it."""
@@ -37,30 +50,57 @@ class TextTable:
                 raise BadInput(f"{self.path}: line {self.lines[0]}: has {len(self.rows[0])} columns, no column "
                                f"{column} (for {quantity}); correct the column map with --map")
             return column - 1
+        if self.names.count(column) > 1:
+            places = [str(number) for number, name in enumerate(self.names, start=1) if name == column]
+            raise BadInput(f"{self.path}: has the name {column!r} (for {quantity}) on the columns "
+                           f"{', '.join(places[:-1])} and {places[-1]}; give the number of the right one in the map "
+                           "instead of the name")
         if column not in self.names:
             near = nearest_of(column, self.names, f"it has {_listed(self.names)}")
             raise BadInput(f"{self.path}: has no column {column!r} (for {quantity}); correct the column map with --map "
                            f"({near})")
         return self.names.index(column)
 
-    def numbers(self, indices: Sequence[int], quantity: str) -> np.ndarray:
-        """Some columns as numbers, one row for each line."""
+    def label(self, index: int) -> str:
+        """How messages name a column."""
+        return repr(self.names[index]) if index < len(self.names) and self.names[index] else f"column {index + 1}"
+
+    def numbers(self, indices: Sequence[int], quantity: str, *, may_be_blank: bool = False) -> np.ndarray:
+        """Some columns as numbers, one row for each line; NaN for what is blank, where that is allowed."""
         out = np.empty((len(self.rows), len(indices)))
         for row, (line, texts) in enumerate(zip(self.lines, self.rows, strict=True)):
             try:
-                out[row] = [number_of(texts[index], self.decimal) for index in indices]
+                values = [number_of(texts[index], self.decimal) for index in indices]
             except (ValueError, IndexError):
-                raise BadInput(f"{self.path}: line {line}: no number for {quantity} "
-                               f"({self._wrong(texts, indices)}); remove the line or repair it") from None
-        if not np.isfinite(out).all():
-            line = self.lines[int(np.argmax(~np.isfinite(out).all(axis=1)))]
-            raise BadInput(f"{self.path}: line {line}: {quantity} is not finite; remove the line or repair it")
+                values = [math.nan]
+            out[row] = values if math.isfinite(sum(values)) else self._line(line, texts, indices, quantity,
+                                                                           may_be_blank)
         return out
 
-    def _wrong(self, texts: Sequence[str], indices: Sequence[int]) -> str:
+    def _line(self, line: int, texts: Sequence[str], indices: Sequence[int], quantity: str,
+              may_be_blank: bool) -> list[float]:
+        """The numbers of a line that has something else; BadInput for what is neither a number nor blank."""
+        try:
+            values = [math.nan if may_be_blank and not texts[index].strip() else number_of(texts[index], self.decimal)
+                      for index in indices]
+        except (ValueError, IndexError):
+            raise BadInput(f"{self.path}: line {line}: no number for {quantity} "
+                           f"({self._wrong(texts, indices, may_be_blank)}); remove the line or repair it") from None
+        if may_be_blank and all(map(math.isnan, values)):
+            return values
+        for index, value in zip(indices, values, strict=True):
+            if not math.isfinite(value) and not (may_be_blank and not texts[index].strip()):
+                blank = ", or leave its cell blank where nothing was recorded" if may_be_blank else ""
+                raise BadInput(f"{self.path}: line {line}: {quantity} is not finite; remove the line or repair it"
+                               f"{blank}")
+        return values
+
+    def _wrong(self, texts: Sequence[str], indices: Sequence[int], may_be_blank: bool) -> str:
         for index in indices:
             if index >= len(texts):
                 return f"the line has {len(texts)} columns"
+            if may_be_blank and not texts[index].strip():
+                continue
             try:
                 number_of(texts[index], self.decimal)
             except ValueError:
@@ -90,55 +130,36 @@ def _listed(names: Sequence[str]) -> str:
     return ", ".join(shown[:MOST_LISTED]) + (" …" if len(shown) > MOST_LISTED else "") or "no names"
 
 
-def text_of(path: Path) -> str:
+def text_of(path: Path) -> TextOfFile:
     """The file's text; one packed by gzip is unpacked."""
+    return text_of_file(path, WANTED, so=", so it is no CSV text")
+
+
+def rows_of(path: Path, text: TextOfFile, separator: str) -> Iterator[tuple[int, list[str]]]:
+    """All lines, split, each with its number."""
+    reader = csv.reader(text.lines[:-1] if text.is_cut else text.lines, delimiter=separator)
+    last = 0
     try:
-        data = path.read_bytes()
-        text = _decoded(gzip.decompress(data) if data.startswith(GZIP) else data)
-    except (gzip.BadGzipFile, EOFError, OSError) as error:
-        if isinstance(error, OSError) and error.strerror:
-            raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a recorded run") from None
-        raise BadInput(f"{path}: is packed by gzip but broken ({error}); pack it again") from None
-    except UnicodeDecodeError:
-        raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV") from None
-    except Exception as error:  # zlib.error, which gzip does not wrap
-        raise BadInput(f"{path}: is packed by gzip but broken ({error}); pack it again") from None
-    if "\0" in text:
-        raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV")
-    return text
-
-
-def _decoded(data: bytes) -> str:
-    """UTF-8, UTF-16 with its mark, or the 8 bits of Western Windows; UnicodeDecodeError for what is no text."""
-    if data.startswith(UTF_16):
-        return data.decode("utf-16")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        if any(byte < 32 and byte not in b"\t\n\r\f" for byte in data):
-            raise
-        return data.decode("cp1252")
-
-
-def rows_of(path: Path, separator: str) -> list[list[str]]:
-    """All lines, split."""
-    try:
-        return list(csv.reader(text_of(path).splitlines(), delimiter=separator))
+        for row in reader:
+            yield last + 1, row
+            last = reader.line_num
     except csv.Error:
-        raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV") from None
+        raise BadInput(f"{path}: line {last + 1}: is no CSV text; give {WANTED}") from None
 
 
 def read_text(path: Path, columns: ColumnMap) -> TextTable:
     """The table of a log; BadInput where there are no samples."""
-    lines = rows_of(path, columns.separator)
+    text = text_of(path)
+    lines = list(rows_of(path, text, columns.separator))
     head = columns.header_lines
-    numbered = [(number, row) for number, row in enumerate(lines[head:], start=head + 1)
-                if any(cell.strip() for cell in row)]
+    numbered = [(number, row) for number, row in lines[head:] if any(cell.strip() for cell in row)]
     if not numbered:
         raise BadInput(f"{path}: has no samples after {head} header lines; give a recorded run")
-    names = [name.strip() for name in lines[columns.names_line - 1]] if columns.names_line else []
+    names = [name.strip() for name in lines[columns.names_line - 1][1]] if columns.names_line else []
     _refuse_surplus(path, numbered, "the line of names" if names else "the first line", len(names or numbered[0][1]))
-    return TextTable(path, names, [row for _, row in numbered], [number for number, _ in numbered], columns.decimal)
+    remark = text.remark()
+    return TextTable(path, names, [row for _, row in numbered], [number for number, _ in numbered], columns.decimal,
+                     () if remark is None else (remark,))
 
 
 def _refuse_surplus(path: Path, numbered: Sequence[tuple[int, list[str]]], first: str, width: int) -> None:
@@ -149,19 +170,25 @@ def _refuse_surplus(path: Path, numbered: Sequence[tuple[int, list[str]]], first
                            "line, or the separator in the map")
 
 
-def metadata_of(path: Path) -> dict[str, list[str]]:
-    """A file of rows, the name of each in its first column."""
+def metadata_of(path: Path) -> dict[str, list[list[str]]]:
+    """A file of rows, by the name of each in its first column."""
+    found: dict[str, list[list[str]]] = {}
     try:
-        return {row[0].strip(): [cell.strip() for cell in row[1:]] for row in rows_of(path, ",") if row}
+        for _, row in rows_of(path, text_of(path), ","):
+            if row:
+                found.setdefault(row[0].strip(), []).append([cell.strip() for cell in row[1:]])
     except BadInput as error:
         raise BadInput(f"{error} (the column map takes gear or encoder from there)") from None
+    return found
 
 
-def metadata_number(path: Path, rows: dict[str, list[str]], name: str) -> float:
+def metadata_number(path: Path, rows: dict[str, list[list[str]]], name: str) -> float:
     """A number above zero from it."""
     if name not in rows:
         raise BadInput(f"{path}: has no row {name!r}; {nearest_of(name, rows) if rows else 'it is empty'}")
-    text = rows[name][0] if rows[name] else ""
+    if len(rows[name]) > 1:
+        raise BadInput(f"{path}: has {len(rows[name])} rows {name!r}; keep one of them")
+    text = rows[name][0][0] if rows[name][0] else ""
     try:
         value = float(text)
     except ValueError:

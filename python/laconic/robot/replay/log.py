@@ -51,8 +51,8 @@ def recording_of(log: Log) -> Recording:
 
 
 def camera_of(log: Log) -> np.ndarray | None:
-    """True displacements in the robot's frame, summed."""
-    if log.moved is not None or log.pose is None:
+    """True displacements in the robot's frame, summed; None without a heading, which that frame needs."""
+    if log.moved is not None or log.pose is None or not log.has_heading:
         return log.moved
     steps = np.diff(log.pose, axis=0)
     cos, sin = np.cos(log.pose[:-1, 2]), np.sin(log.pose[:-1, 2])

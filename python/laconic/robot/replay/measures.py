@@ -46,17 +46,18 @@ def path_length(time_s: np.ndarray, pose: np.ndarray) -> float:
 
 
 def path_errors(name: str, log: Log, predicted: np.ndarray) -> RunErrors:
-    """The errors of a predicted path; one of no length has none, and a closed one no displacement to compare with."""
-    if log.pose is None:
+    """The errors of a predicted path where the true one was recorded; one of no length has none, a closed one no
+    displacement to compare with, and positions alone no heading."""
+    if log.pose is None or not len(log.seen):
         return RunErrors(name, log.session)
-    off = predicted - log.pose
+    true, off = log.pose[log.seen], (predicted - log.pose)[log.seen]
     distance = np.hypot(off[:, 0], off[:, 1])
-    length, displacement = path_length(log.time_s, log.pose), float(np.hypot(*(log.pose[-1] - log.pose[0])[:2]))
+    length, displacement = path_length(log.time_s[log.seen], true), float(np.hypot(*(true[-1] - true[0])[:2]))
     return RunErrors(
         name, log.session,
         float(np.sqrt((distance**2).mean()) / length) if length > LEAST_LENGTH_M else None,
         float(distance[-1] / displacement) if displacement > max(LEAST_LENGTH_M, CLOSED * length) else None,
-        float(abs(off[-1, 2])))
+        float(abs(off[-1, 2])) if log.has_heading else None)
 
 
 def all_errors(logs: Sequence[Log], predicted: Iterable[np.ndarray]) -> list[RunErrors]:

@@ -15,6 +15,7 @@ from laconic.robot.replay import closed_loop, motor_driven, steady_currents
 from laconic.robot.replay.closed_loop import Followed
 from laconic.robot.replay.held_wheels import hold, placed_at
 from laconic.robot.replay.measures import RunErrors, path_errors
+from laconic.robot.replay.placing import fitted_to, start_of
 from laconic.robot.replay.rolling import rolling_of
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -59,7 +60,7 @@ def _with_path(name: str, log: Log, path: np.ndarray) -> Prediction:
 
 def _held(core: Core, scene: Scene, name: str, log: Log) -> Prediction:
     held = hold(core, scene.vehicle, log)
-    path, errors = _with_path(name, log, held.at(log.time_s, _start(log)))
+    path, errors = _with_path(name, log, fitted_to(log, held.at(log.time_s, start_of(log))))
     axles = None if log.current_A is None else steady_currents.axles_of(core, scene.vehicle)
     error = None if axles is None else steady_currents.current_error_A(axles, log, held)
     return path, replace(errors, current_error_A=error)
@@ -67,13 +68,9 @@ def _held(core: Core, scene: Scene, name: str, log: Log) -> Prediction:
 
 def _followed(name: str, log: Log, followed: Followed, is_given: bool = False) -> Prediction:
     """is_given: the currents are the log's own."""
-    path, errors = _with_path(name, log, placed_at(followed.pose, _start(log)))
+    path, errors = _with_path(name, log, fitted_to(log, placed_at(followed.pose, start_of(log))))
     turns = log.wheel_angle_rad is not None or log.wheel_speed_rad_per_s is not None
     compares = not is_given and log.current_A is not None and not np.isnan(followed.current_A).all()
     return path, replace(
         errors, wheel_speed_error=closed_loop.wheel_speed_error(log, followed) if turns else None,
         current_error_A=closed_loop.current_error_A(log, followed) if compares else None)
-
-
-def _start(log: Log) -> np.ndarray:
-    return np.zeros(3) if log.pose is None else log.pose[0]

@@ -24,7 +24,8 @@ def as_text(replay: Replay) -> str:
     lines = [f"# Recorded runs of {replay.subject.scene.name}", "", *_fit_lines(replay), "",
              "## Rolled distance over camera distance, and steady currents", "", *_run_table(replay), "",
              "## Errors of the prediction", "", *_error_table(replay), "", "## In words", ""]
-    return "\n".join([*lines, *(f"* {sentence}" for sentence in in_words(replay)), ""])
+    words = [*in_words(replay), *(f"Left out or filled in: {each}" for each in replay.remarks)]
+    return "\n".join([*lines, *(f"* {sentence}" for sentence in words), ""])
 
 
 def _fit_lines(replay: Replay) -> list[str]:
@@ -175,7 +176,7 @@ def as_numbers(replay: Replay) -> dict[str, Any]:
               for m in replay.models]
     return plain({"scene": str(replay.subject.scene.path), "fitted_on": replay.fitted_on, "models": models,
                   "runs": [e.as_json() | _numbers(c) for c, e in zip(replay.comparisons, replay.errors, strict=True)],
-                  "words": in_words(replay),
+                  "words": in_words(replay), "remarks": replay.remarks,
                   "skipped": replay.skipped})
 
 

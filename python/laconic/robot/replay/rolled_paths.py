@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.logs import Log
-from laconic.robot.logs.log import counted
+from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.logs.read import for_wheels
 from laconic.robot.replay.measures import RunErrors, grand_mean, session_means
 from laconic.robot.replay.predicted import predict
@@ -54,16 +54,23 @@ def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs
 
 def as_numbers(found: RolledPaths) -> dict[str, Any]:
     """For JSON."""
-    return {"runs": [each.as_json() for each in found.errors]}
+    return {"runs": [each.as_json() for each in found.errors], "remarks": remarks_of(found.logs)}
 
 
 def as_text(found: RolledPaths) -> str:
     """A report in Markdown."""
     lines = [f"# {counted(len(found.logs), 'run')} beside {found.scene.name}", "",
              f"Inputs: {_said(found)}.", "", *error_table(found.errors)]
+    lines += remark_lines(found.logs)
     if found.skipped:
         lines += ["", f"Left out, no logs that the map recognises: {', '.join(dict.fromkeys(found.skipped))}."]
     return "\n".join([*lines, ""])
+
+
+def remark_lines(logs: Sequence[Log]) -> list[str]:
+    """What was left out of the files or filled in; nothing where they are taken as they are."""
+    remarks = remarks_of(logs)
+    return ["", "Left out or filled in:", "", *(f"* {each}" for each in remarks)] if remarks else []
 
 
 def _said(found: RolledPaths) -> str:

@@ -18,6 +18,7 @@ import numpy as np
 from laconic.core import Core
 from laconic.errors import BadInput
 from laconic.robot.logs.log import POINTS, Log
+from laconic.robot.replay.placing import fitted_to, start_of
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,10 @@ class Rolling:
         return steps
 
     def path(self, log: Log, start: np.ndarray | None = None) -> np.ndarray:
-        """Predicted poses x, y, heading at the samples' times, from the true first pose (or from `start`)."""
-        if start is None:
-            start = np.zeros(3) if log.pose is None else log.pose[0]
-        return path_of(self.moved(log.rotation_rad(), log.pose_point), start)
+        """Predicted poses x, y, heading at the samples' times, from the true first pose (or from `start`); placed to
+        fit where the log has positions alone."""
+        path = path_of(self.moved(log.rotation_rad(), log.pose_point), start_of(log) if start is None else start)
+        return fitted_to(log, path) if start is None else path
 
 
 def path_of(moved: np.ndarray, start: np.ndarray) -> np.ndarray:

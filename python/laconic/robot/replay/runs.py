@@ -10,6 +10,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.logs import Log, gather_logs
+from laconic.robot.logs.log import remarks_of
 from laconic.robot.replay.compare import Comparison, compare
 from laconic.robot.replay.friction import MODELS, Friction, fit
 from laconic.robot.replay.log import recording_of
@@ -29,6 +30,7 @@ class Replay:
     shown: Comparison               # the run of the picture, predicted from end to end
     skipped: list[str] = field(default_factory=list)
     errors: list[RunErrors] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)   # what was left out of the files, or filled in
 
     def judged(self) -> list[Comparison]:
         """The runs that were not fitted on; all of them when there are no others."""
@@ -66,7 +68,8 @@ def compare_all(subject: Subject, logs: list[Log], fit_names: list[str], skipped
     others = [recording for recording in runs if recording.name not in fit_names] or runs
     shown = compare(subject, others[0], models, whole=True)
     advance(1, what="drawing")
-    return Replay(subject, fit_names, models, comparisons, shown, skipped, rolled_errors(subject, logs, comparisons))
+    return Replay(subject, fit_names, models, comparisons, shown, skipped, rolled_errors(subject, logs, comparisons),
+                  remarks_of(logs))
 
 
 def rolled_errors(subject: Subject, logs: list[Log], comparisons: list[Comparison]) -> list[RunErrors]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from laconic.pictures.curve_style import wrapped
 from laconic.robot.replay.measures import RunErrors
 from laconic.robot.replay.signals import SignalReplay
@@ -21,6 +23,7 @@ def as_text(found: SignalReplay) -> str:
              f"* {_inputs(found)}"]
     if found.left_out:
         lines.append(f"* Not compared, no signals of this vehicle: {', '.join(found.left_out)}.")
+    lines += [f"* Left out or filled in: {remark}." for remark in found.remarks]
     lines += ["", "| compared | largest difference | at [s] | root mean square | largest value in the file |",
               "| --- " * 5 + "|"]
     lines += [f"| {d.signal} | {d.largest:.3g} | {d.at_s:g} | {d.root_mean_square:.3g} | {d.size:.3g} |"
@@ -44,7 +47,7 @@ def as_numbers(found: SignalReplay) -> dict[str, Any]:
         "scene": str(found.scene.path), "log": str(found.log.path), "rows": len(found.log.time_s),
         "begin_s": found.log.begin_s, "end_s": found.log.begin_s + float(found.log.time_s[-1]),
         "step_s": found.scene.run.step_s, "inputs": list(found.inputs), "inputs_between_rows": how,
-        "left_out": list(found.left_out),
+        "left_out": list(found.left_out), "remarks": found.remarks,
         "compared": [{"signal": d.signal, "largest_difference": d.largest, "at_s": d.at_s,
                       "root_mean_square": d.root_mean_square, "largest_value": d.size} for d in found.differences]}
 
@@ -58,7 +61,8 @@ def draw(found: SignalReplay, folder: Path) -> list[Path]:
     rows = picture.subplots(len(apart), 1, sharex=True, squeeze=False)[:, 0]
     time_s = found.log.begin_s + found.log.time_s
     for axes, each in zip(rows, apart, strict=True):
-        axes.plot(time_s, found.log.columns[each.signal], color="k", lw=2.4, alpha=0.35, label="file")
+        there = ~np.isnan(found.log.columns[each.signal])
+        axes.plot(time_s[there], found.log.columns[each.signal][there], color="k", lw=2.4, alpha=0.35, label="file")
         axes.plot(time_s, found.model[each.signal], color="tab:blue", ls="--", label="model")
         axes.set_ylabel(each.signal, fontsize=8)
     rows[0].set_title(wrapped(f"{found.log.path.name} beside {found.scene.name}", 80))

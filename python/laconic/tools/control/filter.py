@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laconic.core.derivatives import check_smooth
+from laconic.core.encoders import is_unsigned, signed
 from laconic.core.given import finite_number, number, numbers, shown, step_count
 from laconic.core.given_array import real_array
 from laconic.core.plant import Plant, Pose
@@ -54,6 +55,7 @@ class Filter:
         self.c: Any = ffi.new("laconic_filter *")
         self._innovation = ffi.new("laconic_innovation *")
         self._sensors = None if encoder is None else self._encoders(encoder)
+        self._is_unsigned = encoder is not None and is_unsigned(encoder)
         self._is_of = self._what_it_is_of()
         if start_count is not None and encoder is None:
             raise BadInput("start_count: has no effect without `encoder`; give that, too, or leave it out")
@@ -208,6 +210,8 @@ class Filter:
 
     def _counts(self, given: ArrayLike) -> Any:
         values = real_array("count", given, (self.wheel_count,), "counts")
+        if self._is_unsigned:
+            values = signed(values)
         if not np.all((-2**31 <= values) & (values < 2**31) & (values == np.floor(values))):
             raise BadInput(f"count: {shown(values.tolist())} are no counts; give whole numbers of 32 bits, one for "
                            "each wheel")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.tools.verify.exact.collocation import exact_start, true_states
+from laconic.tools.report.collocation import exact_start, true_states
 from laconic.tools.verify.exact.trials import INPUTS
 
 

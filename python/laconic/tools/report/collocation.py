@@ -17,16 +17,10 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from laconic.errors import ResultFails
-<<<<<<<< HEAD:python/laconic/tools/report/collocation.py
-from laconic.benchmark.nodes import BITS, POINTS, column, damped, last_coefficient, nodes
-from laconic.verification.derivatives.exact_model import ExactModel, exact_model, numbers_of
-from laconic.verification.derivatives.exact_steps import forcing_of
-========
 from laconic.tools.enclosure.balls import Vector, added, ball, dot
+from laconic.tools.report.nodes import BITS, POINTS, column, damped, last_coefficient, nodes
 from laconic.tools.verify.exact.exact_model import ExactModel, exact_model, numbers_of
 from laconic.tools.verify.exact.exact_steps import forcing_of
-from laconic.tools.verify.exact.nodes import BITS, POINTS, column, damped, last_coefficient, nodes
->>>>>>>> main:python/laconic/tools/verify/exact/collocation.py
 
 Held = Mapping[str, Sequence[float]]
 
