@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.errors import BadInput, nearest_of
+from laconic.errors import shown as shown
 
 if TYPE_CHECKING:
     from laconic.core import Core
@@ -20,21 +21,20 @@ MAKERS = {"input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})",
           "batch_kind": "batch.prepared(vehicle)"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
-LONGEST_SHOWN = 60  # of a value in a message
+MOST_BITS = 128  # of a whole number: more than any that is asked for has
 REAL = ("f", "i", "u")  # kinds of NumPy's types that are real numbers
 
 
-def shown(value: Any) -> str:
-    """A value in a message."""
-    text = repr(value)
-    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
-
-
 def is_real(value: Any) -> bool:
-    """Whether it may be a real number: no text, flag, complex number, date or duration, of Python or NumPy, and none
-    that is masked."""
-    return not (isinstance(value, str | bytes | bool) or is_masked(value)) \
+    """Whether it may be a real number: no text, bytes, flag, complex number, date or duration, of Python or NumPy, and
+    none that is masked."""
+    return not (isinstance(value, str | bool) or is_bytes(value) or is_masked(value)) \
         and getattr(getattr(value, "dtype", None), "kind", "f") in REAL
+
+
+def is_bytes(value: Any) -> bool:
+    """Whether it is bytes, or a view of memory as bytes, whose numbers nobody meant."""
+    return isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.itemsize == 1)
 
 
 def is_masked(value: Any) -> bool:
@@ -55,7 +55,7 @@ def number(name: str, value: Any) -> float:
 def several(values: Any) -> list[Any] | None:
     """The items of a list, tuple, array …; None for what is none: text, bytes, a mapping, and a set, which has no
     order."""
-    if isinstance(values, str | bytes | bytearray | Mapping | Set):
+    if isinstance(values, str | Mapping | Set) or is_bytes(values):
         return None
     try:
         return list(values)
@@ -120,11 +120,14 @@ def by_names(name: str, given: Any) -> Mapping[str, Any]:
 
 
 def whole_number(name: str, value: Any) -> int:
-    """A whole number of any size and sign."""
+    """A whole number of either sign, of at most MOST_BITS."""
     try:
-        return operator.index(value if is_real(value) else None)  # type: ignore[arg-type]  # which it refuses
+        found = operator.index(value if is_real(value) else None)  # type: ignore[arg-type]  # which it refuses
     except TypeError:
         raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one, such as 100") from None
+    if found.bit_length() > MOST_BITS:
+        raise BadInput(f"{name}: {shown(found)} is beyond all bounds; give one such as 100")
+    return found
 
 
 def step_count(name: str, value: Any) -> int:

@@ -203,7 +203,7 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
 
 def read_step(table: Table) -> dict[str, Any]:
     """A step, or "auto" (as 0, until it is found) with the tolerance that it must keep."""
-    given = table.plain().get("step_s")
+    given = table.peek("step_s")
     if not isinstance(given, str) or given != AUTO:
         if table.has("tolerance"):
             table.fail("tolerance", f'has a meaning with step_s = "{AUTO}" alone; take one of them out')
