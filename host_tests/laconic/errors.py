@@ -66,9 +66,11 @@ def shown(value: Any) -> str:
         return f"a whole number of about {int(value.bit_length() * math.log10(2)) + 1} digits"
     try:
         is_cut = type(value) in (str, bytes, bytearray, list, tuple)
-        return cut(repr(value[:LONGEST_SHOWN + 1] if is_cut else value))
+        text = repr(value[:LONGEST_SHOWN + 1] if is_cut else value)
     except Exception:  # a number of thousands of digits inside, a list in itself, another's faulty class
-        return f"an object of type {type(value).__name__}"
+        text = "<>"
+    is_no_value = text == "<>" or re.match(r"<.* at 0x", text)
+    return f"an object of type {type(value).__name__}" if is_no_value else cut(text)
 
 
 def cut(text: str, longest: int = LONGEST_SHOWN) -> str:

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 
+from laconic.core.copies import register
 from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, check_there, items, number, numbers, one_of, several, table
 from laconic.core.inputs import input_fields, row_of, slots_of
@@ -55,7 +56,9 @@ def load(real: str = "double") -> Core:
 def _loaded(real: str) -> Core:
     ffi = FFI()
     ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text(encoding="utf-8"))
-    return Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
+    core = Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
+    register(core)
+    return core
 
 
 class Core:
@@ -75,6 +78,10 @@ class Core:
         self.method_names = self._method_names()
         self.input_fields = input_fields(self)
         self.input_length = ffi.sizeof("laconic_input") // self.dtype.itemsize
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """There is one core of each scalar type in a process."""
+        return load, (self.real,)
 
     def _method_names(self) -> tuple[str, ...]:
         numbers = range(64)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import OwnMemory
 from laconic.core.encoders import GEAR, KEYS, LEAST_INTEGER, MOST_INTEGER, failing, read_encoders
 from laconic.core.fields import ITEM, Field
 from laconic.core.given import c_object, is_real, number, several, shown, step_count
@@ -41,9 +42,9 @@ class Readings:
     """(N,), whole numbers; 0 for a wheel without an encoder."""
 
 
-class Sensors:
+class Sensors(OwnMemory):
     """IMU and encoders of one plant; `c` is the laconic_sensors itself. Step the plant by `run` from now on, as the
-    sensors must see each step."""
+    sensors must see each step. A copy watches a plant of its own: `plant` of the copy."""
 
     def __init__(self, plant: Plant, settings: Any):
         """Sensors as after power-up, beside a plant that stands where it is; `settings`: a laconic_sensor_settings.

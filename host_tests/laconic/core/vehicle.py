@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.binding import Core, Matrices, load
+from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers
 from laconic.core.inputs import check_finite_input
 from laconic.core.plant import Plant
@@ -47,7 +48,7 @@ class Linearisation:
     voltage_matrix: np.ndarray  # (6, N)  by each wheel's voltage, 1 V
 
 
-class Vehicle:
+class Vehicle(OwnMemory):
     """A checked vehicle in one scalar type, which does not move: `plant` makes one that does.
 
     `table` has the keys of a scene's `[vehicle]` (docs/scenes.md), with "wheel", "support", "motor", "payload", "drive"

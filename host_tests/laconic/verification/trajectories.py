@@ -47,8 +47,8 @@ def read_reference(path: Path) -> list[Table]:
         where = f" in line {error.lineno}" if isinstance(error, json.JSONDecodeError) else " in UTF-8"
         raise BadInput(f"{path}: is no valid JSON{where}; give a reference file") from None
     except (ValueError, RecursionError):
-        raise BadInput(f"{path}: nests its lists too deeply, or holds a number of thousands of digits; give a reference "
-                       "file") from None
+        raise BadInput(f"{path}: is no valid JSON: it nests its lists too deeply, or holds a number of thousands of "
+                       "digits; give a reference file") from None
     if not isinstance(content, dict):
         raise BadInput(f"{path}: contains no object with cases; give a reference file")
     top = Table(path, "", content)
