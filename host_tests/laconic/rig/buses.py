@@ -143,11 +143,15 @@ def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: A
 @contextmanager
 def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str,
                  last_words: list[str] | None = None) -> Iterator[int]:
-    """A node in a process of its own; yields its TCP port. `last_words` gets what it prints at its end."""
+    """A node in a process of its own; yields its TCP port. `last_words` gets what it prints at its end.
+
+    It also ends with this process, however that ends: it reads a pipe whose other end is here.
+    """
     program = built(f"bin/laconic-node-{real}")
-    command = [str(program), "--id-base", hex(id_base), *arguments]
+    command = [str(program), "--id-base", hex(id_base), "--with-parent", *arguments]
     # in another session: Ctrl-C goes to the rig only, which brings the node to rest before it ends it
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                          start_new_session=True) as process:
         try:
             line = process.stdout.readline() if process.stdout else ""
             found = re.search(r":(\d+)", line)
