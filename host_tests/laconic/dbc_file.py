@@ -10,7 +10,7 @@ from pathlib import Path
 import cantools
 from cantools.database.can import Database
 
-from laconic.errors import BadInput, reason_of
+from laconic.errors import BadInput, reason_of, words_of
 
 
 @contextmanager
@@ -33,7 +33,7 @@ def load_dbc(path: Path, said: str) -> Database:
     except OSError as error:
         raise BadInput(f"{said} cannot be read ({reason_of(error)}); give a DBC file") from None
     except Exception as error:  # a parser may raise any exception on unexpected text
-        raise BadInput(f"{said} is no DBC file ({error or type(error).__name__}); give one") from None
+        raise BadInput(f"{said} is no DBC file ({words_of(error, 'its parser gives no reason')}); give one") from None
     if not isinstance(found, Database):
         raise BadInput(f"{said} describes no CAN frames; give a DBC file")
     return found

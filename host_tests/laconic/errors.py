@@ -62,13 +62,13 @@ class Refused(BadInput):
 
 def shown(value: Any) -> str:
     """A value in a message: as Python writes it, cut where it is long."""
-    if isinstance(value, int) and value.bit_length() > LONGEST_SHOWN * 3:
-        return f"a whole number of about {int(value.bit_length() * math.log10(2)) + 1} digits"
     try:
         is_cut = type(value) in (str, bytes, bytearray, list, tuple)
         text = repr(value[:LONGEST_SHOWN + 1] if is_cut else value)
     except Exception:  # a number of thousands of digits inside, a list in itself, another's faulty class
         text = "<>"
+        if isinstance(value, int):
+            return f"a whole number of about {int(value.bit_length() * math.log10(2)) + 1} digits"
     is_no_value = text == "<>" or re.match(r"<.* at 0x", text)
     return f"an object of type {type(value).__name__}" if is_no_value else cut(text)
 

@@ -83,9 +83,9 @@ def _decoded(path: Path, number: int, message: Message, data: Any, group: str) -
     try:
         signals: Any = message.decode(bytes(data), decode_choices=False, scaling=True)
         decoded: dict[str, Any] = dict(signals)
-    except Exception as error:  # a decoder may raise any exception on unexpected bytes
-        raise BadInput(f"{path}: frame {number}: {message.name} cannot be decoded ({error}); correct the map's "
-                       "dbc") from None
+    except Exception:  # a decoder may raise any exception on unexpected bytes
+        raise BadInput(f"{path}: frame {number}: {message.name} cannot be decoded: it has {len(data)} "
+                       f"bytes, and {message.length} by the map's dbc; correct that") from None
     values = {name: float(value) for name, value in decoded.items() if isinstance(value, (int, float))}
     which = int(values.get(group, 0.0))
     return (message.name, which), {_counted(message, name, which): value for name, value in values.items()}

@@ -98,11 +98,11 @@ def text_of(path: Path) -> str:
     except (gzip.BadGzipFile, EOFError, OSError) as error:
         if isinstance(error, OSError) and error.strerror:
             raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a recorded run") from None
-        raise BadInput(f"{path}: is packed by gzip but broken ({error}); pack it again") from None
+        raise BadInput(f"{path}: is packed by gzip but broken or cut off; pack it again") from None
     except UnicodeDecodeError:
         raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV") from None
-    except Exception as error:  # zlib.error, which gzip does not wrap
-        raise BadInput(f"{path}: is packed by gzip but broken ({error}); pack it again") from None
+    except Exception:  # zlib.error, which gzip does not wrap
+        raise BadInput(f"{path}: is packed by gzip but broken or cut off; pack it again") from None
     if "\0" in text:
         raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV")
     return text

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import can
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, words_of
 from laconic.rig.frames import FrameBox
 from laconic.rig.node_library import node_library
 
@@ -18,8 +18,10 @@ def read_key(path: Path) -> bytes:
     """The key of AES-128 in a file of 32 hexadecimal digits."""
     try:
         text = path.read_text(encoding="ascii").strip()
+    except UnicodeDecodeError:
+        raise BadInput(f"--key {path}: holds no key; give {KEY_DIGITS} hexadecimal digits") from None
     except (OSError, ValueError) as error:
-        raise BadInput(f"--key {path}: cannot be read ({error}); "
+        raise BadInput(f"--key {path}: cannot be read ({words_of(error, '')}); "
                        f"name a file with {KEY_DIGITS} hexadecimal digits") from None
     if not re.fullmatch(rf"[0-9a-fA-F]{{{KEY_DIGITS}}}", text):
         raise BadInput(f"--key {path}: holds no key; give {KEY_DIGITS} hexadecimal digits")

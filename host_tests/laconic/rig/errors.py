@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 
-from laconic.errors import BadInput, LaconicError, ResultFails
+from laconic.errors import BadInput, LaconicError, ResultFails, words_of
 
 
 class CannotReach(BadInput):
@@ -32,10 +32,11 @@ class BusDied(ResultFails):
 
 def in_words(error: BaseException) -> str:
     """The message of a library, and after it that of the system error that caused it."""
-    text, last = str(error) or type(error).__name__, error
+    text, last = words_of(error, "for a reason that the library does not give"), error
     while last.__cause__ is not None:
         last = last.__cause__
-    return text if str(last) in text else f"{text}: {last}"
+    reason = words_of(last, "")
+    return text if reason in text or str(last) in text else f"{text}: {reason}"
 
 
 class Interrupted(LaconicError):

@@ -117,9 +117,9 @@ def read_log(path: Path) -> list[can.Message]:
         raise BadInput(f"{path}: {reason_of(error)}; give a .blf or .asc file") from None
     except BadInput:
         raise
-    except Exception as error:  # a parser may raise any exception on unexpected bytes
-        raise BadInput(f"{path}: cannot be read as a log ({str(error) or type(error).__name__}); give a .blf or .asc "
-                       "file as it was written") from None
+    except Exception:  # a parser may raise any exception on unexpected bytes
+        raise BadInput(f"{path}: cannot be read as a log: it is broken, or of another kind than its name says; give a "
+                       ".blf or .asc file as it was written") from None
 
 
 class Doubts(logging.Handler):

@@ -83,5 +83,5 @@ def unit_vector(where: str, axis: Sequence[Any]) -> Array:
 
 def words_of(error: Exception) -> str:
     """What a library says of its failure, in one short line."""
-    words = " ".join(str(error).split()) or type(error).__name__
+    words = " ".join(str(error).split()) or "it gives no reason"
     return words if len(words) <= WORDS_AT_MOST else words[:WORDS_AT_MOST] + "…"

@@ -125,5 +125,5 @@ def points_in(path: Path) -> Array | str:
         return np.array(mesh.vertices, dtype=float)
     except MemoryError:
         raise
-    except Exception as error:  # it fails in as many ways
-        return f"cannot be read ({type(error).__name__})"
+    except Exception:  # it fails in as many ways
+        return "cannot be read (it is broken, or no mesh of the kind that its name says)"
