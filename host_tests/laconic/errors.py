@@ -13,7 +13,8 @@ from typing import Any
 LONGEST_SHOWN = 60   # of a value, or of a name of the user's, in a message
 LONGEST_WORD = 100   # of a message, if it is no name of a file
 LONGEST_NAME = 255   # of a file or folder
-LONGEST_LINE = 4000  # a message as a whole
+LONGEST_PATH = 1000
+LONGEST_LINE = 2000  # a message as a whole
 
 
 class LaconicError(Exception):
@@ -89,7 +90,7 @@ def _bounded_word(found: re.Match[str]) -> str:
     word, end = found[0], re.search(r"\W{0,2}$", found[0])
     name = word[:end.start()] if end else word
     if "/" in word or "\\" in word:
-        return re.sub(rf"[^/\\]{{{LONGEST_NAME + 1},}}", lambda part: cut(part[0]), word)
+        return cut(re.sub(rf"[^/\\]{{{LONGEST_NAME + 1},}}", lambda part: cut(part[0]), word), LONGEST_PATH)
     with suppress(OSError, ValueError):
         if len(name) <= LONGEST_NAME and Path(name).exists():
             return word

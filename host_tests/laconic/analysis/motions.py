@@ -12,7 +12,7 @@ from laconic.analysis.field import Field
 from laconic.analysis.from_core import Inputs, Subject, changed, field_of
 from laconic.analysis.reach import reach_rad_per_s
 from laconic.analysis.steady import steady_polynomial
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 
 COMMANDS = {"nu1": 0, "nu2": 1}
 VEHICLE_KEYS = ("mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "wheel_inertia_kgm2", "motor_gain_Nm_per_V",
@@ -122,7 +122,7 @@ def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | N
     if name in VEHICLE_KEYS:
         return vehicle_parameter(subject, name)
     known = ", ".join((*COMMANDS, "input_scale", *VEHICLE_KEYS))
-    raise BadInput(f"--parameter: there is no {name!r}; known are {known}")
+    raise BadInput(f"--parameter: there is no {shown(name)}; known are {known}")
 
 
 def _is_possible(subject: Subject, name: str) -> bool:

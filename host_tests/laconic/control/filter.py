@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from laconic.core.copies import OwnMemory
 from laconic.core.derivatives import check_smooth
-from laconic.core.given import finite_number, number, numbers, shown, step_count
+from laconic.core.given import finite_number, number, numbers, several, shown, step_count
 from laconic.core.given_array import real_array
 from laconic.core.plant import Plant, Pose
 from laconic.core.saved import check_saved
@@ -218,7 +218,8 @@ class Filter(OwnMemory):
             if name not in known:
                 raise BadInput(f"settings.{name}: unknown key; {nearest_of(str(name), known)}")
             if name in counts:
-                value = [value] * counts[name] if np.ndim(value) == 0 else _list(value)
+                many = several(value)
+                value = [value] * counts[name] if many is None else many
                 setattr(made, name, [_usable(f"{name}[{k + 1}]", each, self.core.dtype) for k, each in
                                      enumerate(numbers(f"settings.{name}", value, counts[name]))])
             else:
@@ -254,10 +255,6 @@ class Filter(OwnMemory):
         why, state = self.core.why(), self.core.ffi.addressof(self.c, "state")
         self.core.lib.laconic_step_refusal(why, status, self._model, self._integrator, state, held, 1)
         return self.core.refusal(why)
-
-
-def _list(values: Any) -> Any:
-    return values.tolist() if isinstance(values, np.ndarray) else values
 
 
 def _usable(name: str, value: float, dtype: Any) -> float:

@@ -182,7 +182,9 @@ class StepDerivatives(OwnMemory):
 
     def _vary(self, by: Any, name: str, value: float) -> None:
         head, _, key = name.rpartition(".")
-        item = re.fullmatch(r"wheel\[(\d+)\]", head)
+        if not isinstance(name, str):
+            raise BadInput(f"vehicle: {shown(name)} is no name of a number; give one such as \"mass_kg\"")
+        item = re.fullmatch(r"wheel\[(\d{1,4})\]", head)
         if item and not 1 <= int(item[1]) <= self.wheels:
             raise BadInput(f"{name}: there is no such wheel; give 1 to {self.wheels}")
         tables = {"": ("vehicle", by), "payload": ("vehicle.payload", by.payload), "ground": ("ground", by.ground)}

@@ -63,7 +63,7 @@ def _count(given: Any, is_of_list: bool, fail: Fail) -> int:
         return 0
     count = _whole(COUNTS, given, A_COUNT, fail)
     if count <= 0:
-        fail(COUNTS, f"is {count}; give a number above 0{', false for none' * is_of_list}")
+        fail(COUNTS, f"is {shown(count)}; give a number above 0{', false for none' * is_of_list}")
     return count
 
 
@@ -92,8 +92,8 @@ def _gear(given: Any, fail: Fail) -> float:
 def _wrap(given: Any, fail: Fail) -> int:
     wrap = _whole(WRAP, given, "a whole number", fail)
     if wrap < 2:
-        fail(WRAP, f"is {wrap}; give the number of values that the counter has, such as 65536, or take it out for 32 "
-             "bits")
+        fail(WRAP, f"is {shown(wrap)}; give the number of values that the counter has, such as 65536, or take it out "
+             "for 32 bits")
     return wrap
 
 
@@ -104,7 +104,7 @@ def _whole(key: str, given: Any, what: str, fail: Fail) -> int:
     except TypeError:
         fail(key, f"is {str(given).lower() if isinstance(given, bool) else shown(given)}, not {what}")
     if not LEAST_INTEGER <= found <= MOST_INTEGER:
-        fail(key, f"is {found}; give a whole number of at most 32 bits, {LEAST_INTEGER} to {MOST_INTEGER}")
+        fail(key, f"is {shown(found)}; give a whole number of at most 32 bits, {LEAST_INTEGER} to {MOST_INTEGER}")
     return int(found)
 
 

@@ -48,7 +48,7 @@ def number(name: str, value: Any) -> float:
         return float(value if is_real(value) else "no number")
     except OverflowError:
         return math.inf if value > 0 else -math.inf
-    except (TypeError, ValueError):
+    except Exception:  # of whatever class it is
         raise BadInput(f"{name}: {shown(value)} is no number; give one") from None
 
 
@@ -100,7 +100,8 @@ def one_of(name: str, given: Any, known: Iterable[str]) -> str:
     """A word that is among those that are known."""
     words = list(known)
     if not isinstance(given, str) or given not in words:
-        raise BadInput(f"{name}: there is no {shown(given)}; {nearest_of(str(given), words)}")
+        near = nearest_of(given if isinstance(given, str) else "", words)
+        raise BadInput(f"{name}: there is no {shown(given)}; {near}")
     return given
 
 
@@ -189,6 +190,6 @@ def _of_kind(kind: str, name: str, given: Any) -> float | bool:
 
 def items(name: str, given: Any) -> Iterator[tuple[str, Any]]:
     """The tables of a list with their names, numbered from 1."""
-    if isinstance(given, str | Mapping) or not isinstance(given, Sequence):
+    if isinstance(given, str | Mapping) or is_bytes(given) or not isinstance(given, Sequence):
         raise BadInput(f"{name}: {shown(given)} is no list; give a list of tables")
     return ((f"{name}[{item}]", each) for item, each in enumerate(given, start=1))

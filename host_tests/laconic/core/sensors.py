@@ -168,7 +168,7 @@ def _whole(name: str, value: Any) -> int:
     if found is None or not is_real(value):
         raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one")
     if not LEAST_INTEGER <= found <= MOST_INTEGER:
-        raise BadInput(f"{name}: {found} has more than 32 bits; give {LEAST_INTEGER} to {MOST_INTEGER}")
+        raise BadInput(f"{name}: {shown(found)} has more than 32 bits; give {LEAST_INTEGER} to {MOST_INTEGER}")
     return found
 
 

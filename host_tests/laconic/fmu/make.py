@@ -13,7 +13,7 @@ import numpy as np
 from laconic.core import load
 from laconic.core.given import flag
 from laconic.core.sensors import settings_of, values_of
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.outputs import check_ending, check_file, whole_file
 from laconic.paths import SOURCE_DIR, as_path, built
 from laconic.scene import METHODS, Scene, check_scene
@@ -74,7 +74,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     if estimate and derivatives:
         raise BadInput("estimate, derivatives: no FMU has both; leave one of them out")
     if not isinstance(version, int | np.integer) or version not in VERSIONS:
-        raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
+        raise BadInput(f"version: there is no FMI {shown(version)}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))
     check_file("out", path)

@@ -11,7 +11,7 @@ import numpy as np
 from cantools.database.can import Database, Message
 
 from laconic.dbc_file import load_dbc
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 from laconic.logs.column_map import NUMBERED, ColumnMap, Quantity
 from laconic.paths import SOURCE_DIR
 from laconic.rig.logs import read_log
@@ -41,13 +41,13 @@ def signal_names(columns: ColumnMap, quantity: Quantity, database: Database) -> 
         message, signal = column.split(".")
         known = {each.name: each for each in database.messages}
         if message not in known:
-            raise BadInput(f"{columns.path}: {quantity.name}.columns: the DBC has no message {message!r}; "
+            raise BadInput(f"{columns.path}: {quantity.name}.columns: the DBC has no message {shown(message)}; "
                            f"{nearest_of(message, known)}")
         signals = [each.name for each in known[message].signals]
         numbered = (signal.replace(NUMBERED, str(n)) for n in range(1, len(signals) + 1))
         there = [each for each in dict.fromkeys(numbered) if each in signals]
         if not there:
-            raise BadInput(f"{columns.path}: {quantity.name}.columns: {message} has no signal {signal!r}; "
+            raise BadInput(f"{columns.path}: {quantity.name}.columns: {message} has no signal {shown(signal)}; "
                            f"{nearest_of(signal, signals)}")
         names += [f"{message}.{each}" for each in there]
     return names

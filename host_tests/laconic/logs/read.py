@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.logs.column_map import NUMBERED, YAW_RATE, Column, ColumnMap, Quantity, angle_unit
 from laconic.logs.log import LEAST_SAMPLES, PER_WHEEL, Log, wheels_of
 from laconic.logs.text_table import TextTable, metadata_number, metadata_of, read_text
@@ -123,7 +123,7 @@ def _can_source(path: Path, columns: ColumnMap) -> tuple[np.ndarray, Columns]:
         if not names or any(name not in table.values for name in names):
             if quantity.is_optional:
                 return None
-            raise BadInput(f"{path}: has no signal {quantity.columns[0]!r} (for {quantity.name}); correct the map")
+            raise BadInput(f"{path}: has no signal {shown(quantity.columns[0])} (for {quantity.name}); correct the map")
         return np.column_stack([table.values[name] for name in names])
 
     return table.time_s, source

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.errors import BadInput, nearest_of, reason_of, shown
 from laconic.logs.column_map import Column, ColumnMap
 
 GZIP = b"\x1f\x8b"
@@ -39,8 +39,8 @@ class TextTable:
             return column - 1
         if column not in self.names:
             near = nearest_of(column, self.names, f"it has {_listed(self.names)}")
-            raise BadInput(f"{self.path}: has no column {column!r} (for {quantity}); correct the column map with --map "
-                           f"({near})")
+            raise BadInput(f"{self.path}: has no column {shown(column)} (for {quantity}); correct the column map with "
+                           f"--map ({near})")
         return self.names.index(column)
 
     def numbers(self, indices: Sequence[int], quantity: str) -> np.ndarray:
@@ -64,7 +64,7 @@ class TextTable:
             try:
                 number_of(texts[index], self.decimal)
             except ValueError:
-                return f"{texts[index][:LONGEST_SHOWN]!r}{self._other_decimal(texts[index])}"
+                return f"{shown(texts[index][:LONGEST_SHOWN])}{self._other_decimal(texts[index])}"
         return "overflow"
 
     def _other_decimal(self, text: str) -> str:
@@ -160,12 +160,12 @@ def metadata_of(path: Path) -> dict[str, list[str]]:
 def metadata_number(path: Path, rows: dict[str, list[str]], name: str) -> float:
     """A number above zero from it."""
     if name not in rows:
-        raise BadInput(f"{path}: has no row {name!r}; {nearest_of(name, rows) if rows else 'it is empty'}")
+        raise BadInput(f"{path}: has no row {shown(name)}; {nearest_of(name, rows) if rows else 'it is empty'}")
     text = rows[name][0] if rows[name] else ""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise BadInput(f"{path}: {name}: is {text[:LONGEST_SHOWN]!r}; give a number above zero")
+        raise BadInput(f"{path}: {name}: is {shown(text[:LONGEST_SHOWN])}; give a number above zero")
     return value

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 from cantools.database.can import Database, Message
 from cantools.database.can.signal import Signal
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 
 FLOAT_BITS = (16, 32, 64)
 FD_LENGTHS = (12, 16, 20, 24, 32, 48, 64)
@@ -25,7 +25,7 @@ class DbcMessage:
         self.dbc, self.where = dbc, where
         by_name = {each.name: each for each in database.messages}
         if name not in by_name:
-            raise BadInput(f"{where}.{key}: {dbc.name} has no message {name!r}; {nearest_of(name, by_name)}")
+            raise BadInput(f"{where}.{key}: {dbc.name} has no message {shown(name)}; {nearest_of(name, by_name)}")
         self.c: Message = by_name[name]
         self._check(database)
         if self.c.is_container:
@@ -76,7 +76,7 @@ class DbcMessage:
     def signal(self, name: str, key: str = "name", where: str | None = None) -> Signal:
         """A signal by its name."""
         if name not in self.signals:
-            self.fail(key, f"has no signal {name!r}; {nearest_of(name, self.signals)}", where)
+            self.fail(key, f"has no signal {shown(name)}; {nearest_of(name, self.signals)}", where)
         if not self.signals[name].scale:
             self.fail(key, f"has the scale 0 for {name}, so that it says nothing; correct the DBC", where)
         return self.signals[name]

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput, reason_of
+from laconic.errors import BadInput, reason_of, shown
 from laconic.scene import Outputs, Scene
 from laconic.scene.inputs import Input, step_in_words, step_remedy
 from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
@@ -79,7 +79,7 @@ def read_signal_log(path: Path) -> SignalLog:
     head = [name.strip() for name in head]
     for index, name in enumerate(head):
         if name in head[:index]:
-            raise BadInput(f"{path}: has two columns {name!r}; keep one of them")
+            raise BadInput(f"{path}: has two columns {shown(name)}; keep one of them")
     if len(rows) < 2:
         raise BadInput(f"{path}: has {len(rows)} rows of numbers; give at least two")
     table = np.array([_numbers(path, head, line, row) for line, row in enumerate(rows, start=2)])
@@ -98,7 +98,7 @@ def _numbers(path: Path, head: list[str], line: int, row: list[str]) -> list[flo
         except ValueError:
             is_number = False
         if not is_number:
-            raise BadInput(f"{path}: line {line}: {name} is {text[:40]!r}; give a finite number")
+            raise BadInput(f"{path}: line {line}: {name} is {shown(text[:40])}; give a finite number")
     return [float(text) for text in row]
 
 

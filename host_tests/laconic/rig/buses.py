@@ -13,7 +13,7 @@ from typing import Any
 
 import can
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.paths import built
 from laconic.rig.client import NodeClient
 from laconic.rig.echo import deaf_to_itself
@@ -30,7 +30,7 @@ _channel_numbers = itertools.count()
 def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
     """A python-can bus; CannotReach names the interface, the channel and a remedy."""
     is_socket = str(channel).startswith("socket://")
-    port = re.fullmatch(r"socket://[^/]+:(\d+)(\D.*)?", str(channel))
+    port = re.fullmatch(r"socket://[^/]+:(\d{1,9})(\D.*)?", str(channel))
     if is_socket and not (port and 0 < int(port[1]) <= LARGEST_PORT):
         raise BadInput(f"--channel {channel}: names no port; give socket://HOST:PORT, PORT from 1 to {LARGEST_PORT}")
     if interface == "slcan" and is_socket:
@@ -156,7 +156,7 @@ def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str,
             line = process.stdout.readline() if process.stdout else ""
             found = re.search(r":(\d+)", line)
             if not found:
-                raise CannotReach(f"{program}: did not start (its output: {line.strip()!r})")
+                raise CannotReach(f"{program}: did not start (its output: {shown(line.strip())})")
             yield int(found.group(1))
         finally:
             process.terminate()

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput, cut, shown
+from laconic.errors import LONGEST_NAME, BadInput, cut, shown
 from laconic.scene.scene import Scene, scene_of
 from laconic.scene.table import Table, plain
 
@@ -21,7 +21,8 @@ def build_scene(tables: Mapping[str, Any]) -> Scene:
     """
     if not isinstance(tables, Mapping):
         raise BadInput(f"scene: {shown(tables)} is no mapping; give the tables of a scene, such as {{\"vehicle\": …}}")
-    name = str(tables.get("name") or "scene")
+    given = tables.get("name")
+    name = given[:LONGEST_NAME] if isinstance(given, str) and given else "scene"
     try:
         values = _values(tables)
     except RecursionError:

@@ -9,7 +9,7 @@ from typing import Any
 
 from laconic.core import Field, load
 from laconic.core.inputs import no_such_wheel
-from laconic.errors import nearest_of
+from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
@@ -30,6 +30,9 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": source}
     if not parts["name"].strip():
         top.fail("name", "is empty; give a name, or take it out for the file's own")
+    if len(parts["name"]) > LONGEST_NAME:
+        top.fail("name", f"has {len(parts['name'])} letters; give at most {LONGEST_NAME}, and what else there is to say "
+                 "as source")
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))
@@ -169,7 +172,7 @@ def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], p
     name = signal.partition("[")[0]
     if name in per_wheel:
         table.fail(key, no_such_wheel(signal, name, wheel_count))
-    table.fail(key, f"there is no signal {signal!r}; {nearest_of(signal, known)}")
+    table.fail(key, f"there is no signal {shown(signal)}; {nearest_of(signal, known)}")
 
 
 def read_input(table: Table, wheel_count: int) -> Input:

@@ -163,7 +163,7 @@ class Table:
         """One of some words; hints as in laconic.scene.not_modelled."""
         word = self.text(key, default)
         if word is not None and word not in choices:
-            self.fail(key, f"there is no {word!r}; {nearest_of(word, choices, instead_of(word, hints))}")
+            self.fail(key, f"there is no {shown(word)}; {nearest_of(word, choices, instead_of(word, hints))}")
         return word
 
     def numbers(self, key: str, length: int | None = None, *, finite: bool = True) -> tuple[float, ...]:
@@ -213,7 +213,7 @@ def _line_of(text: str, error: Exception) -> str:
     lines = text.splitlines()
     if not found or int(found[1]) > len(lines):
         return ""
-    return f", {cut(lines[int(found[1]) - 1].strip())!r}"
+    return f", {shown(lines[int(found[1]) - 1].strip())}"
 
 
 def plain(value: Any) -> Any:

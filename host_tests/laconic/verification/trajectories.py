@@ -14,7 +14,7 @@ import numpy as np
 
 from laconic.core import Core
 from laconic.core.plant import Plant
-from laconic.errors import BadInput, Refused, reason_of
+from laconic.errors import BadInput, Refused, reason_of, shown
 from laconic.scene import MOST_STEPS
 from laconic.scene.table import Table
 
@@ -152,7 +152,7 @@ def decimal(state: Table, key: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        state.fail(key, f"holds {text!r}; give finite decimal numbers")
+        state.fail(key, f"holds {shown(text)}; give finite decimal numbers")
     return value
 
 
