@@ -31,8 +31,8 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     if not parts["name"].strip():
         top.fail("name", "is empty; give a name, or take it out for the file's own")
     if len(parts["name"]) > LONGEST_NAME:
-        top.fail("name", f"has {len(parts['name'])} letters; give at most {LONGEST_NAME}, and what else there is to say "
-                 "as source")
+        top.fail("name", f"has {len(parts['name'])} letters; give at most {LONGEST_NAME}, and what else there is to "
+                 "say as source")
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))

@@ -55,7 +55,7 @@ def test_what_is_no_mapping_is_refused():
 
 def test_a_name_that_fills_a_page_is_refused_by_its_length() -> None:
     tables = {"name": "n" * 10**6, "vehicle": {"mass_kg": 1.0}, "run": {"duration_s": 1.0, "step_s": 0.1}}
-    with pytest.raises(BadInput) as refused:
-        build_scene(tables)
+    with pytest.raises(laconic.BadInput) as refused:
+        laconic.build_scene(tables)
     assert str(refused.value).endswith("name: has 1000000 letters; give at most 255, and what else there is to say as "
                                        "source")
