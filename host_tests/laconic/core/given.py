@@ -152,13 +152,17 @@ def c_object(core: Core, kind: str, given: Any) -> Any:
 
 
 def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = ()) -> dict[str, float | bool]:
-    """The numbers of one table of a vehicle by the core's list of fields; `others` are keys that the caller reads.
+    """The numbers of one table of a vehicle by the core's list of fields, angles in rad whatever the table has;
+    `others` are keys that the caller reads.
 
     BadInput names a key that is unknown or that holds no number.
     """
     if not isinstance(given, Mapping):
         raise BadInput(f"{name}: {shown(given)} is no table; give a mapping from keys to numbers")
+    from laconic.core.spelling import with_radians  # which reads numbers by this room
+
     fields = {field.key: field for field in core.fields_of(path)}
+    given = with_radians(name, given, fields)
     known = list(dict.fromkeys((*fields, *others)))
     if unknown := [key for key in given if key not in known]:
         raise BadInput(f"{name}.{unknown[0]}: unknown key; {nearest_of(str(unknown[0]), known)}")

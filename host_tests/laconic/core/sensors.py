@@ -20,6 +20,7 @@ from laconic.core.fields import ITEM, Field
 from laconic.core.given import c_object, is_real, number, several, shown, step_count
 from laconic.core.inputs import sampled_rows
 from laconic.core.saved import check_saved
+from laconic.core.spelling import with_radians
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -111,7 +112,9 @@ def settings_of(core: Core, given: Mapping[str, Any], wheel_count: int) -> Any:
     settings = core.ffi.new("laconic_sensor_settings *")
     top = _mapping("sensors", given, ("imu", "encoder"))
     fields = {field.key: field for field in core.fields_of(IMU)}
-    for key, value in _mapping(IMU, top.get("imu", {}), fields).items():
+    imu = top.get("imu", {})
+    for key, value in _mapping(IMU, with_radians(IMU, imu, fields) if isinstance(imu, Mapping) else imu,
+                               fields).items():
         _put(settings, fields[key], _values(f"{IMU}.{key}", fields[key], value))
     if "encoder" in top:
         put_encoders(core, settings, ENCODER, top["encoder"], wheel_count)

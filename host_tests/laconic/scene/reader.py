@@ -9,6 +9,7 @@ from typing import Any
 
 from laconic.core import Field, load
 from laconic.core.inputs import no_such_wheel
+from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
@@ -119,16 +120,10 @@ def read_own(table: Table, fields: Sequence[Field]) -> dict[str, float]:
 
 def read_position(table: Table) -> dict[str, float]:
     """x_m and y_m, or distance_m and a bearing from the ξ axis."""
-    polar = [key for key in ("distance_m", "bearing_rad", "bearing_deg") if table.has(key)]
-    plain = [key for key in ("x_m", "y_m") if table.has(key)]
-    if polar and plain:
-        table.fail(polar[0], f"is given besides {plain[0]}; give x_m and y_m, or distance_m and bearing_rad")
-    if not polar:
-        return {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
-    distance, bearing = table.number("distance_m"), table.angle("bearing")
-    if distance < 0:
-        table.fail("distance_m", f"is {distance:g}; give 0 or more, and the direction by the bearing")
-    return {"x_m": distance * math.cos(bearing), "y_m": distance * math.sin(bearing)}
+    place = place_by_bearing(table)
+    if place is None:
+        return {key: table.number(key, finite=False) for key in PLAIN}
+    return dict(zip(PLAIN, place, strict=True))
 
 
 def read_point(table: Table) -> dict[str, float]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from laconic.core.given import is_masked
+from laconic.core.spelling import is_in_degrees
 from laconic.errors import BadInput, cut, nearest_of, reason_of, shown
 from laconic.scene.not_modelled import instead_of
 from laconic.scene.toml_bounds import BeyondBounds, check_bounds
@@ -129,9 +130,7 @@ class Table:
     def angle(self, stem: str, default: Any = ..., *, finite: bool = True) -> Any:
         """An angle in rad: from stem_rad, or from stem_deg in degrees."""
         in_radians, in_degrees = f"{stem}_rad", f"{stem}_deg"
-        if self.has(in_degrees):
-            if self.has(in_radians):
-                self.fail(in_degrees, f"is given besides {in_radians}; keep one of them")
+        if is_in_degrees(self, stem):
             self.in_degrees.add(self.name(in_radians))
             return math.radians(self.number(in_degrees, finite=finite))
         if default is REQUIRED and not self.has(in_radians):
