@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import NotCopied
 from laconic.core.encoders import unsigned
 from laconic.core.grip import Grip
 
@@ -27,8 +28,10 @@ WHOLE = ("encoder_count",)
 GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what needs the reactions
 
 
-class Recorder:
+class Recorder(NotCopied):
     """`rows` rows of some signals, outputs or inputs, one at the start of every `every`-th step and one at the end."""
+
+    REMEDY = "take its columns()"
 
     def __init__(self, plant: Plant, signals: tuple[str, ...], every: int, rows: int, watched: bool = False,
                  sensors: Sensors | None = None):

@@ -155,7 +155,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
       for key in ("scalar", "sources", "enumerations", "derivatives", "estimate") for no in ("no", float("nan"), 0)),
     *((lambda key=key: laconic.simulate(scene(), **{key: "no"}), f"{key}: 'no' is neither True nor False")
       for key in ("progress", "watched", "estimated")),
-    (lambda: laconic.read_scene("/dev/zero"), "/dev/zero: has more than 64 MiB, which no scene needs; give the"),
+    (lambda: laconic.read_scene("/dev/zero"), "/dev/zero: has more than 16 MiB, which no scene needs; give the"),
     (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "unset"}]}), "known are fixed, mecanum, omni, roller"),
     (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "mecanum"}]}),
      "vehicle.wheel[1].roller_rad: is missing; give the angle between axle and rollers, such as 0.785398 (45°)"),

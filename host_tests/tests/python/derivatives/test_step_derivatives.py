@@ -11,6 +11,7 @@ import pytest
 from laconic import BadInput, Refused
 from laconic.core.binding import load
 from laconic.core.derivatives import StepDerivatives
+from laconic.tools.verify.exact import exact_gauss
 from laconic.tools.verify.exact.trials import (
     KINDS,
     METHODS,
@@ -23,7 +24,6 @@ from laconic.tools.verify.exact.trials import (
     tangent,
     trials,
 )
-from laconic.tools.verify.exact import exact_gauss
 from references.derivatives.adjoints import adjoint_error
 
 TRIALS = len(KINDS) * len(METHODS)

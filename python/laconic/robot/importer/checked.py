@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.robot.importer.placement import Array
 
 WORDS_AT_MOST = 160
@@ -34,11 +34,11 @@ def number(where: str, value: Any) -> float:
     if value is None:
         raise BadInput(f"{where}: is missing; give a number")
     if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
-        raise BadInput(f"{where}: {value[:WORDS_AT_MOST]!r} is no number; give one such as 0.5")
+        raise BadInput(f"{where}: {shown(value[:WORDS_AT_MOST])} is no number; give one such as 0.5")
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise BadInput(f"{where}: {value!r} is no number; give one such as 0.5") from None
+        raise BadInput(f"{where}: {shown(value)} is no number; give one such as 0.5") from None
 
 
 def mass(where: str, value: Any) -> float:
@@ -83,5 +83,5 @@ def unit_vector(where: str, axis: Sequence[Any]) -> Array:
 
 def words_of(error: Exception) -> str:
     """What a library says of its failure, in one short line."""
-    words = " ".join(str(error).split()) or type(error).__name__
+    words = " ".join(str(error).split()) or "it gives no reason"
     return words if len(words) <= WORDS_AT_MOST else words[:WORDS_AT_MOST] + "…"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import stat
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -17,6 +18,9 @@ from laconic.robot.importer.checked import LARGEST
 from laconic.robot.importer.placement import Array
 
 PREFIXES = ("package://", "model://", "file://")
+BESIDE_MESHES = ("urdf", "xacro", "sdf", "mjcf", "xml", "robot", "robots", "model", "models", "description")
+"""Names of folders that hold a robot's file beside the folder of its meshes."""
+PACKAGE_FILES = ("package.xml", "model.config")
 
 
 @dataclass
@@ -30,6 +34,7 @@ class MeshFiles:
     asked_for: str | None = None
     reader: Reader = field(default_factory=lambda: Reader("trimesh"))
     read: dict[str, Array | None] = field(default_factory=dict)
+    found: list[Path] = field(default_factory=list)  # folders of packages that were asked for
 
     def __enter__(self) -> MeshFiles:
         return self
@@ -42,11 +47,30 @@ class MeshFiles:
         if uri not in self.read:
             path = self.find(uri) if uri else None
             found = "names no file" if not uri else "not found" if path is None else (
-                what_is_no_file(path) or self._points_of(path))
+                what_is_no_file(path) or self._outside(path) or self._points_of(path))
             if isinstance(found, str):
                 self.missing[uri] = found
             self.read[uri] = None if isinstance(found, str) else found
         return self.read[uri]
+
+    def _outside(self, path: Path) -> str:
+        """What is wrong with a file that no folder of the robot holds; empty for others. A link in such a folder may
+        lead anywhere: whoever made it had the file."""
+        place = os.path.normpath(path.absolute())
+        if any(Path(place).is_relative_to(folder) for folder in self.folders()):
+            return ""
+        return "lies outside of the robot's folder; copy it there, or --package NAME=FOLDER"
+
+    def folders(self) -> list[Path]:
+        """Those that a robot's meshes may lie in: its file's folder, or the package or kit that this is a part of, and
+        the packages that are given or were found."""
+        own = self.robot.resolve().parent
+        kit = next((each for each in (own, *own.parents) if any((each / name).exists() for name in PACKAGE_FILES)), own)
+        if kit == own and own.name.lower() in BESIDE_MESHES:
+            kit = own.parent
+        given = self.robot.absolute().parent
+        packages = (*self.packages.values(), *self.found)
+        return [Path(os.path.normpath(each.absolute())) for each in (own, given, kit, *packages)]
 
     def _points_of(self, path: Path) -> Array | str:
         """Or why there are none."""
@@ -76,6 +100,7 @@ class MeshFiles:
         if scheme in ("package://", "model://"):
             name, _, inside = rest.partition("/")
             folder = self.package(name)
+            self.found += [folder] if folder else []
             return _there(folder / inside) if folder else None
         return _there(Path(rest)) if scheme else _there(self.robot.parent / rest)
 
@@ -125,5 +150,5 @@ def points_in(path: Path) -> Array | str:
         return np.array(mesh.vertices, dtype=float)
     except MemoryError:
         raise
-    except Exception as error:  # it fails in as many ways
-        return f"cannot be read ({type(error).__name__})"
+    except Exception:  # it fails in as many ways
+        return "cannot be read (it is broken, or no mesh of the kind that its name says)"

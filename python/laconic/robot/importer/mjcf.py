@@ -15,7 +15,18 @@ from laconic.robot.importer.bounded import Library, bounded
 from laconic.robot.importer.checked import DISSIPATION, finite, mass, not_negative, words_of
 from laconic.robot.importer.mjcf_left_out import left_out
 from laconic.robot.importer.placement import Array, inverse, placement, point_of
-from laconic.robot.importer.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
+from laconic.robot.importer.robot_tree import (
+    BALL,
+    FIXED,
+    HINGE,
+    SLIDE,
+    TURNS_ROUND_RAD,
+    Joint,
+    Link,
+    Robot,
+    Shape,
+    check_count,
+)
 from laconic.robot.importer.xml_file import xml_root
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
@@ -33,6 +44,7 @@ def read_mjcf(path: Path, model_name: str | None) -> Robot:
 def _read(path: Path, model_name: str | None) -> Robot:
     model, data, warnings = _compiled(path)
     base = _base(path, model, model_name)
+    check_count(path, "bodies", model.nbody)
     inside = [body for body in range(1, model.nbody) if model.body_rootid[body] == base]
     for body in inside:
         _check_numbers(f"{path}: body {model.body(body).name or body}", model, data, body)

@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, cut, nearest_of
 from laconic.robot.importer.placement import Array, point_of
 
 HINGE, SLIDE, FIXED, BALL = "hinge", "slide", "fixed", "ball"
 TURNS_ROUND_RAD = 4.0 * np.pi  # a hinge with a wider range than this counts as one without limits
-LONGEST_SHOWN = 60  # of a name in a message
+MOST_LINKS = 10_000  # of a robot: hundreds of times those of a usual one
 CORNERS = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
 
 
@@ -160,12 +160,18 @@ class Robot:
         return [self.links[name] for name in found]
 
 
+def check_count(path: Path, what: str, count: int) -> None:
+    """BadInput for more links, joints or bodies than any robot has."""
+    if count > MOST_LINKS:
+        raise BadInput(f"{path}: has {count} {what}, and {MOST_LINKS} are read at most; give a part of it")
+
+
 def base_of(path: Path, links: Iterable[str], children: Iterable[str]) -> str:
     """The only link that is no joint's child; BadInput where there is none or several."""
     hanging = set(children)
     roots = [name for name in links if name not in hanging]
     if len(roots) != 1:
-        names = ", ".join(each[:LONGEST_SHOWN] for each in roots[:4])
+        names = ", ".join(cut(each) for each in roots[:4])
         raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({names or 'a loop'}); a robot has one, "
                        "its base")
     return roots[0]

@@ -44,6 +44,7 @@ from laconic.robot.importer.robot_tree import (
     Robot,
     Shape,
     base_of,
+    check_count,
     mimics,
 )
 from laconic.robot.importer.xml_file import Element, xml_root
@@ -102,6 +103,8 @@ class _Model:
             if model.find(nested) is not None:
                 raise BadInput(f"{path}: model {model.get('name')} has an <{nested}>, which is not read; put its "
                                "links into it")
+        for what in ("link", "joint", "frame"):
+            check_count(path, f"{what}s", len(model.findall(what)))
         for part in (*model.findall("link"), *model.findall("joint")):
             refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}

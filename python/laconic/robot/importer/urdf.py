@@ -40,6 +40,7 @@ from laconic.robot.importer.robot_tree import (
     Robot,
     Shape,
     base_of,
+    check_count,
     mimics,
 )
 from laconic.robot.importer.xml_file import Element, root_of, xml_root
@@ -78,6 +79,8 @@ def _quiet() -> Iterator[None]:
 def _robot(path: Path, root: Element, files: MeshFiles, form: str) -> Robot:
     from urdf_parser_py.urdf import URDF
 
+    for what in ("link", "joint"):
+        check_count(path, f"{what}s", len(root.findall(what)))
     _check_numbers(path, root)
     with _quiet():
         try:

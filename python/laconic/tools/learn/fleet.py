@@ -11,13 +11,14 @@ import numpy as np
 
 from laconic.batch import Batch
 from laconic.batch.given import lane_count, thread_count
+from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number
 from laconic.errors import BadInput
 from laconic.tools.learn.task import Motion, Rules, checked_actions, distance_of, has_left, has_reached, observed
 from laconic.tools.learn.variants import Spread, vehicles_of
 
 
-class Fleet:
+class Fleet(OwnMemory):
     """`lanes` robots of a scene. An action is held for `action_s`, in steps of `step_s` by `method`. The usual one
     takes any damping at a small and equal cost; `auto` has ten digits more for up to 25 times that.
 
