@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -41,6 +41,22 @@ def number(where: str, value: Any) -> float:
         raise BadInput(f"{where}: {shown(value)} is no number; give one such as 0.5") from None
 
 
+def read_number(text: Any) -> float | None:
+    """A finite number of a part that a robot does not need; None where it has none."""
+    try:
+        return finite("", [text], 1)[0]
+    except BadInput:
+        return None
+
+
+def read_numbers(text: str | None, count: int) -> list[float] | None:
+    """The same of several in one text."""
+    try:
+        return finite("", (text or "").split(), count)
+    except BadInput:
+        return None
+
+
 def mass(where: str, value: Any) -> float:
     """0 or above."""
     return not_negative(where, "mass", value, "kg")
@@ -64,10 +80,11 @@ def sizes(where: str, values: Sequence[Any]) -> Array:
     return np.array([size(where, "size", value) for value in finite(f"{where}: size", values, 3)])
 
 
-def inertia_matrix(where: str, inertia: Any) -> Array:
-    """3 × 3 from ixx, ixy …"""
-    ixx, ixy, ixz, iyy, iyz, izz = finite(f"{where}: inertia", [
-        getattr(inertia, name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")], 6)
+def inertia_matrix(where: str, inertia: Mapping[str, Any]) -> Array:
+    """3 × 3 from ixx, ixy …, of which those off the diagonal may be left out."""
+    ixx, iyy, izz = (finite(f"{where}: inertia {name}", [inertia.get(name)], 1)[0] for name in ("ixx", "iyy", "izz"))
+    ixy, ixz, iyz = (finite(f"{where}: inertia {name}", [inertia.get(name, 0.0)], 1)[0]
+                     for name in ("ixy", "ixz", "iyz"))
     return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
 
 
