@@ -1,4 +1,4 @@
-/* exponential-gauss-8, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as ζ does:
+/* Collocation at Gauss' points, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as ζ does:
  * with F at the nodes and the panel's weights, by rounds until they settle. Where the rounds of ζ have found the
  * solution of the collocation, all rounds of a direction are linearised there. Where an input turns the vehicle by
  * radians they end before it: then each is linearised where it was, so that the derivative is that of the step as it
