@@ -20,7 +20,7 @@ from laconic.can.rig.buses import VirtualClock, next_channel, open_bus
 from laconic.can.rig.verdict import Judgement
 from laconic.scene import Scene, read_scene
 
-PLAY = Path(__file__).parent / "play"
+PLAY = Path(__file__).parents[1] / "can" / "play"
 DBC = PLAY / "transporter.dbc"
 PERIOD_US = 10_000
 CURRENTS = 0x200          # a command of a C620 group

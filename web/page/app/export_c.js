@@ -25,8 +25,8 @@ const ZEROS = /** @type {[string, string][]} */ ([
 export function cExample(scene, how, drive) {
   /** @type {{steps: number, input: any}[]} */
   const parts = stretches(drive, how.step_s, scene.vehicle.wheel.length);
-  return `// ${commentText(scene.name)}: made by the page of Laconic. Compile it with the core:
-// cc -std=c99 -O2 -ffp-contract=off -fno-tree-slp-vectorize -I core_c/include robot.c core_c/src/*.c
+  return `// ${commentText(scene.name)}: made by the page of Laconic. Compile it with the two files of the core:
+// cc -std=c99 -O2 -I. robot.c laconic/laconic.c
 #include <laconic/laconic.h>
 #include <stdio.h>
 

@@ -89,7 +89,7 @@ def test_the_importer_does_with_the_fmu_what_the_page_states(
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(test_\w+)`", PAGE))))
 def test_every_test_that_the_page_names_exists(name: str) -> None:
-    files = (SOURCE_DIR / "host_tests" / "tests" / "fmu").glob("test_fmu_*.py")
+    files = (SOURCE_DIR / "host_tests" / "tests" / "fmu" / "fmu").glob("test_fmu_*.py")
     assert any(f"def {name}(" in path.read_text(encoding="utf-8") for path in files)
 
 

@@ -200,7 +200,7 @@ def test_its_types_and_its_modules_have_the_same_names():
 
 def test_it_tells_of_itself_what_all_packages_tell():
     manifest = json.loads((FOLDER / "package.json").read_text(encoding="utf-8"))
-    facts = json.loads((SOURCES.parent / "facts.json").read_text(encoding="utf-8"))
+    facts = json.loads((SOURCES.parents[1] / "packaging" / "facts.json").read_text(encoding="utf-8"))
     assert manifest["description"] == facts["sentence"]
     assert ".example" not in json.dumps(manifest)
     assert re.fullmatch(r"\d+\.\d+\.\d+", manifest["version"]) and manifest["license"] == "MIT"

@@ -18,7 +18,7 @@ LANGUAGES = {"gcc": ("c99", "c11", "c17"), "clang": ("c99", "c11", "c17"),
 CASES = [(compiler, standard) for compiler in LANGUAGES if shutil.which(compiler) for standard in LANGUAGES[compiler]]
 STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Werror"]
 CORE = SOURCE_DIR / "core_c"
-TRAJECTORY = CORE / "tests" / "trajectory_hash.c"
+TRAJECTORY = CORE / "tests" / "bits" / "trajectory_hash.c"
 BITS = {"double": ["cefe5b00452642bd", "5344d53e1679ed1e"], "single": ["ba4e7a6dd5f14330", "ecf7bee90946cdc7"]}
 OF_FIRMWARE = "-DLACONIC_WITH_EXPONENTIAL_GAUSS=0"  # of images with one method
 
@@ -61,8 +61,9 @@ def test_every_public_header_stands_alone_in_every_language_that_it_promises(com
 def test_a_step_compiles_without_a_warning_for_sanitizers_too(tmp_path):
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
-    run("gcc", "-std=c99", "-Os", "-fsanitize=address,undefined", *STRICT, "-I", CORE / "include", "-c",
-        CORE / "src" / "exact_flow.c", "-o", "step.o", folder=tmp_path)
+    run("gcc", "-std=c99", "-Os", "-fsanitize=address,undefined", *STRICT, "-I", CORE / "include",
+        *(word for path in (CORE / "src").iterdir() for word in ("-I", path)), "-c",
+        CORE / "src" / "methods" / "exact_flow.c", "-o", "step.o", folder=tmp_path)
 
 
 @pytest.mark.parametrize(("compiler", "real", "effort"), [

@@ -32,7 +32,7 @@ def test_its_command_makes_the_two_files_by_python_alone(tmp_path):
 
 
 def test_its_targets_components_and_options_exist():
-    core, packages = SOURCE_DIR / "core_c", SOURCE_DIR / "packaging"
+    core, packages = SOURCE_DIR / "core_c", SOURCE_DIR / "packaging" / "c"
     files = [core / "CMakeLists.txt", *(core / "cmake").iterdir(), packages / "CMakeLists.txt"]
     lists = "".join(path.read_text(encoding="utf-8") for path in files)
     assert [name for name in re.findall(r"`(laconic_(?:runtime|development|amalgamation|packages))`", PAGE)

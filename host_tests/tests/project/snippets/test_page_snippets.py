@@ -31,7 +31,7 @@ NOT_RUN = 54  # a page that leaves out one more says so here, too
 OF_THE_READER = {"my.toml": "scenes/kuka_youbot.toml", "robot.urdf": ("docs/tutorial.md", "xml"),
                  "program.c": ("README.md", "c")}
 """Files that pages call by these names: a file of the project, or a page's first snippet in a language."""
-KNOWN = "".join((SOURCE_DIR / "host_tests" / name).read_text(encoding="utf-8") for name in (
+KNOWN = "".join((SOURCE_DIR / "python" / name).read_text(encoding="utf-8") for name in (
     "requirements.in", "requirements-peers.in"))
 PAGES_THAT_RUN = sorted({snippet.page for snippet in ALL if snippet.runs_here})
 

@@ -23,7 +23,7 @@ from laconic.tools.verify.exact.trials import (
     tangent,
     trials,
 )
-from references.derivatives import exact_gauss
+from laconic.tools.verify.exact import exact_gauss
 from references.derivatives.adjoints import adjoint_error
 
 TRIALS = len(KINDS) * len(METHODS)

@@ -220,7 +220,7 @@ def test_a_single_robot_refuses_what_the_vector_refuses():
 
 
 def test_without_gymnasium_one_line_names_the_extra(monkeypatch: pytest.MonkeyPatch):
-    for name in [each for each in sys.modules if each.split(".")[:2] == ["laconic", "learn"]]:
+    for name in [each for each in sys.modules if each.split(".")[:3] == ["laconic", "tools", "learn"]]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     with pytest.raises(BadInput, match=r'pip install "laconic\[learn\]"'):
