@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import laconic
+from laconic.scene.methods import EXPLICIT
 
 CARRIAGE = {
     "mass_kg": 10.3, "yaw_inertia_kgm2": 0.231, "com_x_m": 0.013, "com_y_m": 0.021, "wheel_radius_m": 0.051,
@@ -28,7 +29,7 @@ def rates(robot, nu, heading, inputs):
 
 def test_the_derivative_is_the_slope_of_a_step(robot):
     step_s = 1e-6
-    plant = robot.plant("rk4", step_s, nu_rad_per_s=NU, heading_rad=HEADING)
+    plant = robot.plant(EXPLICIT, step_s, nu_rad_per_s=NU, heading_rad=HEADING)
     plant.run(INPUTS)
     slope = (np.array([*plant.nu, plant.pose.x_m, plant.pose.y_m, plant.pose.heading_rad])
              - [*NU, 0.0, 0.0, HEADING]) / step_s
