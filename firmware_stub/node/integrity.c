@@ -290,11 +290,8 @@ void laconic_integrity_on_frame(laconic_integrity *integrity, laconic_node *node
     const bool loading = (integrity->checks & LACONIC_INTEGRITY_MOTION) != 0 && is_loading(node, frame);
     const uint32_t commits = node->session.count[LACONIC_WIRE_COMMIT];
     if (loading) look_at_loaded(integrity, node);
-    /* as one without a vehicle: no frame but COMMIT does anything with a wrong model, whose counts may be too large */
-    const bool is_wrong = integrity->broken == LACONIC_INTEGRITY_OF_MODEL && node->state == LACONIC_WIRE_STATE_FAULT;
-    if (is_wrong) node->state = LACONIC_WIRE_STATE_EMPTY;
+    node->model_is_wrong = integrity->broken == LACONIC_INTEGRITY_OF_MODEL;
     laconic_node_on_frame(node, frame, now_us);
-    if (is_wrong && node->state == LACONIC_WIRE_STATE_EMPTY) node->state = LACONIC_WIRE_STATE_FAULT;
     if (loading) integrity->loaded = sum_of_loaded(node);
     if (node->session.count[LACONIC_WIRE_COMMIT] > commits && node->answer[LACONIC_WIRE_COMMIT].status == 0) {
         integrity->has_vehicle = true;

@@ -5,8 +5,14 @@
 
 #include <string.h>
 
+/* A build without CAN FD has no room for the 64 bytes of its frames. */
+static bool is_usable(const laconic_node_config *config) {
+    if (!LACONIC_NODE_CAN_FD && config->can_fd) return false;
+    return config->id_base % LACONIC_NODE_ID_STRIDE == 0 && config->id_base <= 0x7E0U && config->method != NULL;
+}
+
 bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us) {
-    if (config->id_base % LACONIC_NODE_ID_STRIDE != 0 || config->id_base > 0x7E0U) return false;
+    if (!is_usable(config)) return false;
     memset(node, 0, sizeof *node);
     node->config = *config;
     node->state = LACONIC_WIRE_STATE_EMPTY;
@@ -65,7 +71,7 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
     const uint32_t offset = frame->id - node->config.id_base;
     if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) { /* for another node, or for a drive */
 #if LACONIC_NODE_WITH_DRIVES
-        if (plays_drives(node)) laconic_drives_on_frame(&node->drives, frame, now_us);
+        if (plays_drives(node) && laconic_frame_fits(frame)) laconic_drives_on_frame(&node->drives, frame, now_us);
 #endif
         return;
     }

@@ -24,7 +24,7 @@ static uint8_t begin(laconic_node *node) {
 
 /* Begins a run with a new key: motion frames that were sent for an earlier run no longer pass. */
 static uint8_t start(laconic_node *node, uint8_t state) {
-    if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (!may_start(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
     laconic_node_begin_run(node);
     if (!LACONIC_NODE_DRIVES_ONLY) laconic_raw_restart(&node->raw_input);
     node->groups_seen = 0;
@@ -55,7 +55,7 @@ static uint8_t start_lockstep(laconic_node *node) {
 static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_control_t *frame, uint32_t now_us) {
     laconic_node_free_run run = {0};
     if (LACONIC_NODE_DRIVES_ONLY) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-    if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (!may_start(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
     if (!choose_rate(&run, frame->rate, node->plant.integrator.step_s)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
     node->free_run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
     laconic_node_begin_periods(node, run.rate_Hz, run.steps_per_period, now_us);
@@ -95,7 +95,7 @@ void laconic_node_make_idle(laconic_node *node) {
 
 static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
     laconic_refusal why = {0};
-    if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (!has_model(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
     laconic_status status = laconic_plant_restart(&node->plant, &node->start, &why);
 #if LACONIC_NODE_WITH_SENSORS
     laconic_node_start_sensors(node, &node->sensors.settings);
@@ -178,6 +178,7 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     node->drive_plan = new->drives;
 #endif
     node->start = new->start;
+    node->model_is_wrong = false;
     node->state = LACONIC_WIRE_STATE_READY;
     laconic_node_clear_inputs(node);
     return 0;
@@ -200,7 +201,7 @@ static uint8_t select_estimate(laconic_node *node, bool wanted, laconic_node_res
     laconic_refusal why = {0};
     if (!wanted) node->estimates = false;
     if (!wanted) return 0;
-    if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (!has_model(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
     const laconic_status status = laconic_node_start_estimate(node, &why);
     answer->field = (uint8_t)why.field;
     answer->item = (uint8_t)why.item;
@@ -218,9 +219,10 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
         /* a condition cannot be reached: the last decides nothing, as the tests' build leaves out nothing */
-    } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) ||
+    } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !speaks_fd(node)) ||
                /* cannot be reached: the tests' build leaves out nothing */
-               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & ESTIMATE_LEFT_OUT)) != 0) {
+               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & (TAKES_LEFT_OUT | ESTIMATE_LEFT_OUT))) !=
+                   0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
 #if LACONIC_NODE_WITH_ESTIMATE

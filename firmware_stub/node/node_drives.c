@@ -34,7 +34,7 @@ static uint32_t rate_of(laconic_real step_s) {
 
 uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *field) {
     const laconic_drive_protocol *protocol = protocol_of(node, &node->drive_plan);
-    if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (!may_start(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
     const uint32_t rate_Hz = rate_of(node->plant.integrator.step_s);
     *field = rate_Hz == 0 ? LACONIC_FIELD_STEP : LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
     if (rate_Hz == 0) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;

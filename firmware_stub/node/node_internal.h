@@ -49,15 +49,36 @@ static inline bool is_running(const laconic_node *node) {
            node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node);
 }
 
+/* Whether there is a vehicle whose model may be read. A wrong one may have counts beyond its arrays. */
+static inline bool has_model(const laconic_node *node) {
+    return node->state != LACONIC_WIRE_STATE_EMPTY && !node->model_is_wrong;
+}
+
+static inline bool may_start(const laconic_node *node) {
+    return node->state == LACONIC_WIRE_STATE_READY && !node->model_is_wrong;
+}
+
 /* Bits of SELECT that ask for sensors, and those that this build leaves out: of `send`, and of the raw output. */
 #define SENDS_OF_SENSORS (LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER)
 #define RAW_OF_SENSORS (LACONIC_RAW_IMU | LACONIC_RAW_ENCODER)
-#define SENDS_LEFT_OUT (LACONIC_NODE_WITH_SENSORS ? 0U : SENDS_OF_SENSORS)
+#define SENDS_LEFT_OUT \
+    ((LACONIC_NODE_WITH_SENSORS ? 0U : SENDS_OF_SENSORS) | (LACONIC_WITH_POSE ? 0U : LACONIC_NODE_SEND_POSE) | \
+     (LACONIC_WITH_WHEEL_ANGLES ? 0U : LACONIC_NODE_SEND_WHEEL_ANGLE))
 #define RAW_LEFT_OUT \
     ((LACONIC_NODE_WITH_SENSORS ? 0U : RAW_OF_SENSORS) | (LACONIC_NODE_WITH_DRIVES ? 0U : LACONIC_RAW_HELD_TORQUE) | \
-     (LACONIC_NODE_DRIVES_ONLY ? LACONIC_RAW_NU | LACONIC_RAW_ENERGY : 0U))
+     (LACONIC_NODE_DRIVES_ONLY ? LACONIC_RAW_NU | LACONIC_RAW_ENERGY : 0U) | \
+     (LACONIC_WITH_POSE ? 0U : LACONIC_RAW_POSE) | (LACONIC_WITH_WHEEL_ANGLES ? 0U : LACONIC_RAW_WHEEL_ANGLE))
 
 #define SELECTS_ESTIMATE 0x20U /* of the byte with the take_ bits */
+
+/* Inputs that this build's core does not read, so that a rig does not believe that they act. */
+#define TAKES_LEFT_OUT \
+    ((LACONIC_WITH_VOLTAGE ? 0U : LACONIC_RAW_VOLTAGE) | (LACONIC_WITH_AXLE_TORQUE ? 0U : LACONIC_RAW_AXLE_TORQUE) | \
+     (LACONIC_WITH_BODY_WRENCH ? 0U : LACONIC_RAW_BODY_WRENCH) | \
+     (LACONIC_WITH_WORLD_FORCE ? 0U : LACONIC_RAW_WORLD_FORCE) | (LACONIC_WITH_SAMPLED_INPUT ? 0U : LACONIC_RAW_SAMPLED))
+
+/* Whether frames of CAN FD may be sent. */
+static inline bool speaks_fd(const laconic_node *node) { return LACONIC_NODE_CAN_FD && node->config.can_fd; }
 
 static inline bool estimates(const laconic_node *node) {
 #if LACONIC_NODE_WITH_ESTIMATE

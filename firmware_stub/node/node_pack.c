@@ -48,7 +48,7 @@ static uint32_t version(void) {
 #define METHOD_BITS 8 /* of IDENTITY.methods; a later method has none, and COMMIT refuses one that is not there */
 
 static void pack_identity(const laconic_node *node, uint8_t *data) {
-    data[1] = (uint8_t)(node->config.can_fd << 4);
+    data[1] = (uint8_t)(speaks_fd(node) << 4);
     data[2] = LACONIC_WIRE_VERSION;
     put16(data + 3, version());
     data[5] = sizeof(laconic_real);
@@ -94,6 +94,10 @@ static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
 }
 
 #if LACONIC_NODE_WITH_SENSORS
+#if LACONIC_MAX_WHEELS > 16
+#error "laconic: ENCODER numbers 16 wheels: set LACONIC_MAX_WHEELS to 16 or less, or LACONIC_NODE_WITH_SENSORS to 0"
+#endif
+
 static void pack_wheel_angle(const laconic_node *node, uint8_t *data) {
     laconic_real angle[LACONIC_MAX_WHEELS + 3] = {0};
     laconic_plant_wheel_angles(&node->plant, angle);

@@ -168,6 +168,11 @@ static char *put(char *to, uint32_t value, unsigned digits) {
     return to;
 }
 
+/* Only lengths that a DLC states have a line, and only frames that this build has room for. */
+static bool has_line(const laconic_frame *frame) {
+    return laconic_frame_fits(frame) && length_of(dlc_of(frame->length)) == frame->length;
+}
+
 static char letter_of(const laconic_frame *frame) {
     if (frame->fd) return (char)((frame->bit_rate_switch ? 'b' : 'd') - (frame->extended ? 'a' - 'A' : 0));
     return (char)((frame->remote ? 'r' : 't') - (frame->extended ? 'a' - 'A' : 0));
@@ -175,7 +180,7 @@ static char letter_of(const laconic_frame *frame) {
 
 size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]) {
     char *to = text;
-    if (!slcan->open || slcan->rate_is_wrong) return 0;
+    if (!slcan->open || slcan->rate_is_wrong || !has_line(frame)) return 0;
     *to++ = letter_of(frame);
     to = put(to, frame->id, frame->extended ? 8 : 3);
     to = put(to, dlc_of(frame->length), 1);

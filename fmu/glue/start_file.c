@@ -32,12 +32,21 @@ static int hex_digit(char c) {
     return -1;
 }
 
-/* A URI of the scheme "file" (with %20 for a blank) or a path → the path with "/start.bin"; false: it does not fit. */
+/* The case of a scheme's letters does not matter (RFC 3986). */
+static bool is_file_uri(const char *text) {
+    static const char lower[] = "file:", upper[] = "FILE:";
+    for (size_t k = 0; k < sizeof lower - 1; k++)
+        if (text[k] != lower[k] && text[k] != upper[k]) return false;
+    return true;
+}
+
+/* A URI of the scheme "file" (with %20 for a blank) or a path → the path with "/start.bin". False iff it does not fit, or
+ * %00 would end it. */
 static bool file_name(char *name, size_t size, const char *resources) {
     static const char tail[] = "/start.bin";
     size_t used = 0;
     bool uri = false;
-    if (strncmp(resources, "file:", 5) == 0) {
+    if (is_file_uri(resources)) {
         uri = true;
         resources += 5;
         if (strncmp(resources, "//", 2) == 0) {
@@ -49,6 +58,7 @@ static bool file_name(char *name, size_t size, const char *resources) {
     for (; *resources != '\0' && used + sizeof tail < size; resources++) {
         const int high = uri && *resources == '%' ? hex_digit(resources[1]) : -1;
         const int low = high >= 0 ? hex_digit(resources[2]) : -1;
+        if (high == 0 && low == 0) return false;
         name[used++] = low >= 0 ? (char)(high * 16 + low) : *resources;
         if (low >= 0) resources += 2;
     }
@@ -72,6 +82,9 @@ static inline bool take_private(fmu_instance *instance, uint32_t reference, doub
     return fmu_model_take_private(instance, reference, bits);
 }
 
+/* Exactly as many bytes as the pairs need, whose count is anything. */
+static bool has_pairs(uint64_t bytes, uint64_t count) { return bytes % 16 == 0 && count == bytes / 16; }
+
 static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, const char *token) {
     fmu_stream stream = {0};
     uint64_t version = 0, scalar = 0, hash = 0, count = 0, checksum = 0, reference = 0;
@@ -87,11 +100,12 @@ static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, con
     fmu_stream_u64(&stream, &scalar);
     fmu_stream_u64(&stream, &hash);
     fmu_stream_u64(&stream, &count);
-    if (version != FILE_VERSION || hash != fmu_token_hash(token) || count != (size - stream.at - 8) / 16) return false;
+    if (version != FILE_VERSION || hash != fmu_token_hash(token) || !has_pairs(size - stream.at - 8, count)) return false;
     instance->scalar = scalar != 0;
     for (uint64_t k = 0; k < count; k++) {
         fmu_stream_u64(&stream, &reference);
         fmu_stream_reals(&stream, &value, 1);
+        if (reference > UINT32_MAX) return false;
         if (FMU_MODEL_PORTS > 0 && reference >= FMU_PRIVATE_START) {
             if (!take_private(instance, (uint32_t)reference, value)) return false;
             continue;

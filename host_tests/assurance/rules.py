@@ -20,7 +20,8 @@ MOST_FILES = 1650
 MOST_LINES_OF_CODE = 400
 GENERATED = (".fmu", ".o", ".so", ".a", ".pyc", ".profraw", ".log", "laconic_dbc.c", "laconic_dbc.h", "unity.c")
 RUN_DATE = re.compile(r"\b20[2-9]\d-[01]\d-[0-3]\d\b")
-DATED = ("CHANGELOG.md", "scenes/", "python/requirements", "packaging/requirements", "host_tests/tests/", "web/", "LICENSE")
+DATED = ("CHANGELOG.md", "scenes/", "python/requirements", "packaging/requirements", "host_tests/tests/", "web/",
+         "LICENSE")
 C_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 GENERATORS = ("packaging/laconic_build/c/", "packaging/laconic_build/wire/generate_wire.py", "python/laconic_fmu/")
 
@@ -72,7 +73,8 @@ def made(paths: list[str]) -> Iterator[str]:
 def shipping(paths: list[str]) -> Iterator[str]:
     """What people install takes nothing from host_tests."""
     for path in paths:
-        if path.startswith(("packaging/laconic_build/wheel/", "packaging/laconic_build/c/")) and "host_tests" in text_of(path):
+        what_ships = path.startswith(("packaging/laconic_build/wheel/", "packaging/laconic_build/c/"))
+        if what_ships and "host_tests" in text_of(path):
             yield f"{path}: names host_tests, nothing of which ships"
 
 

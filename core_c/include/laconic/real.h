@@ -56,6 +56,13 @@ typedef int64_t laconic_turns;
 #error "laconic: LACONIC_MAX_SUPPORTS must be from 1 to 16"
 #endif
 
+#ifndef LACONIC_MAX_BODIES /* bodies on hinges besides the carriage (articulated.h); 0 leaves them all out */
+#define LACONIC_MAX_BODIES 8
+#endif
+#if LACONIC_MAX_BODIES < 0 || LACONIC_MAX_BODIES > 10
+#error "laconic: LACONIC_MAX_BODIES must be from 0 to 10"
+#endif
+
 /* How many wheels a loop runs over: a field of the model, or the scene's own number. */
 #ifndef LACONIC_WHEELS
 #define LACONIC_WHEELS(model) ((model)->wheel_count)

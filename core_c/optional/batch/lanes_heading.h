@@ -38,10 +38,12 @@ typedef struct lanes_integer { /* a number cut to its whole part: as an integer,
 
 static inline real lanes_number(verdict integer) { return __builtin_convertvector(integer, real); }
 
-/* |x| < half the range of the integers. */
+/* |x| < half the range of the integers; other numbers, and NaN, of lanes that are refused count as 0, since C does not
+ * define their conversion. */
 static inline lanes_integer lanes_cut(real x) {
+    const verdict fits = magnitude(x) < HALF_TURN;
     lanes_integer cut;
-    cut.integer = __builtin_convertvector(x, verdict);
+    cut.integer = __builtin_convertvector((real)((verdict)x & fits), verdict);
     cut.whole = lanes_number(cut.integer);
     return cut;
 }

@@ -240,6 +240,22 @@ static void add_floor(laconic_error *sizes, const laconic_error *floor) {
     sizes->wheel_angle_rad += floor->wheel_angle_rad;
 }
 
+/* A size that left the scalar type's range on its way may be NaN, as infinity less infinity is. */
+static real or_infinite(real size) {
+    const real most = LACONIC_REAL_MAX;
+    return size >= R(0) ? size : most + most;
+}
+
+static void make_sizes(laconic_error *sizes) {
+    sizes->nu_rad_per_s = or_infinite(sizes->nu_rad_per_s);
+    sizes->place_m = or_infinite(sizes->place_m);
+    sizes->heading_rad = or_infinite(sizes->heading_rad);
+    sizes->wheel_angle_rad = or_infinite(sizes->wheel_angle_rad);
+}
+
+/* NaN is larger than any size, so that it is not passed over. */
+static real larger_size(real a, real b) { return a > or_infinite(b) ? a : or_infinite(b); }
+
 /* Of a row and a vector of sizes. */
 static real sizes_dot(vector row, vector sizes) {
     return magnitude(row.x) * sizes.x + magnitude(row.y) * sizes.y + magnitude(row.z) * sizes.z;
@@ -250,7 +266,7 @@ static void sizes_by_wheel(laconic_error *sizes, laconic_error *floor, const sta
     for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
         const vector row = vec(m->wheel_of_zeta[i]);
         const real off = magnitude(dot(row, error->travel)) + sizes_dot(row, error->doubt_travel);
-        sizes->wheel_angle_rad = larger_of(sizes->wheel_angle_rad, off);
+        sizes->wheel_angle_rad = larger_size(sizes->wheel_angle_rad, off);
         floor->wheel_angle_rad = larger_of(floor->wheel_angle_rad, size(row) * error->floor_travel);
     }
 }
@@ -273,7 +289,7 @@ static void sizes_of(laconic_error *sizes, laconic_error *floor, const state_err
     for (int k = 0; k < 3; k++) {
         const vector row = vec(m->nu_of_zeta[k]);
         const real off = magnitude(dot(row, error->zeta)) + sizes_dot(row, error->doubt_zeta);
-        sizes->nu_rad_per_s = larger_of(sizes->nu_rad_per_s, off);
+        sizes->nu_rad_per_s = larger_size(sizes->nu_rad_per_s, off);
         floor->nu_rad_per_s = larger_of(floor->nu_rad_per_s, size(row) * error->floor_zeta);
     }
     sizes_by_wheel(sizes, floor, error, m);
@@ -283,6 +299,8 @@ static void sizes_of(laconic_error *sizes, laconic_error *floor, const state_err
     floor->place_m = error->floor_path_m + R(2) * floor->heading_rad * laconic_estimate_extent(estimate, &plant->state);
     add_resolution(floor, plant);
     add_floor(sizes, floor);
+    make_sizes(sizes);
+    make_sizes(floor);
 }
 
 /* Carries the error to the plant's moment, at which the window ends. */
@@ -347,9 +365,9 @@ static void read_friction(laconic_errors *errors, const laconic_estimate *estima
     laconic_error *sizes = &errors->now, *floor = &errors->rounding;
     for (int k = 0; k < 3; k++)
         sizes->nu_rad_per_s =
-            larger_of(sizes->nu_rad_per_s, R(2) * magnitude(dot(vec(plant->model.nu_of_zeta[k]), zeta)));
+            larger_size(sizes->nu_rad_per_s, R(2) * magnitude(dot(vec(plant->model.nu_of_zeta[k]), zeta)));
     for (int32_t i = 0; i < plant->friction.wheel_count; i++)
-        sizes->wheel_angle_rad = larger_of(
+        sizes->wheel_angle_rad = larger_size(
             sizes->wheel_angle_rad,
             R(2) * magnitude(difference(plant->slip.wheel_angle_rad[i], estimate->twin_slip.wheel_angle_rad[i])));
     sizes->place_m = R(2) * laconic_root(dx * dx + dy * dy);
@@ -357,6 +375,8 @@ static void read_friction(laconic_errors *errors, const laconic_estimate *estima
     floor->nu_rad_per_s = LACONIC_EPSILON * size(zeta_of(now));
     add_resolution(floor, plant);
     add_floor(sizes, floor);
+    make_sizes(sizes);
+    make_sizes(floor);
 #else
     (void)errors, (void)estimate, (void)plant;
 #endif

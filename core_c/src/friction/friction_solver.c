@@ -24,7 +24,8 @@
  * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
  * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
  * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
- * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. */
+ * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. ROUNDED is
+ * 2.5 units in the last place in both types. It must exceed HIDDEN, which is part of the residual that it bounds. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define RESOLVED R(4e-5)
@@ -37,7 +38,7 @@
 #else
 #define TOLERANCE R(1e-12)
 #define RESOLVED R(3e-11)
-#define ROUNDED R(1e-16)
+#define ROUNDED R(6e-16)
 #define CLOSE R(900)
 #define SNAP R(1e-10)
 #define BORDER R(0.998)
@@ -59,6 +60,7 @@ typedef struct contact_in_pass {
     real t[2], length; /* impulse + slip/W; length 0 where it sticks */
     real axle;         /* impulse of the axle's friction, as its own projection */
     real firm;         /* residual of a slip to which no wheel gives way, which light wheels would hide otherwise */
+    real rest;         /* all other residual */
     bool locked;
 
     int32_t rank; /* of the law: number of rows */
@@ -84,22 +86,32 @@ void laconic_friction_prepare(friction_wheel *w) {
     w->lateral_mass = inverse_or_zero(square(combined(w->row, -w->rolling[1], w->rolling[0])));
 }
 
+static inline real least_of(real a, real b) { return a < b ? a : b; }
+
+/* The most firm residual of a contact that slips on the border of its grip: no slip moves the impulse further. */
+RARE real beyond_grip(const friction_wheel *w, real grip, const real p[2]) {
+    const real size = p[0] * p[0] + p[1] * p[1], left = (grip * grip - size) / grip;
+    return left * left * inverse_or_zero(w->lateral_mass);
+}
+
 /* Looks at a contact with the speeds and impulses of the pass before. Returns the square of its residual. */
 INLINE real look(contact_in_pass *restrict c, const friction_wheel *w, const friction_load *l, vector nu, real speed,
                  const real p[2]) {
     real inside = R(1), off[2], axle, pushed, size;
     for (int m = 0; m < 2; m++) {
         c->moved[m] = dot(w->row[m], nu);
-        c->t[m] = p[m] + (c->moved[m] - w->rim[m] * speed) / w->mobility;
+        off[m] = (c->moved[m] - w->rim[m] * speed) / w->mobility;
+        c->t[m] = p[m] + off[m];
     }
     c->length = R(0);
     size = c->t[0] * c->t[0] + c->t[1] * c->t[1];
     if (l->grip < LACONIC_REAL_MAX && size > BORDER * l->grip * l->grip) {
-        const real length = quick_root(size), outwards = c->t[0] * (c->t[0] - p[0]) + c->t[1] * (c->t[1] - p[1]);
+        const real length = quick_root(size), outwards = c->t[0] * off[0] + c->t[1] * off[1];
         if (length > l->grip) inside = l->grip / length;
         if (length > l->grip || outwards > R(0)) c->length = length;
     }
-    for (int m = 0; m < 2; m++) off[m] = inside * c->t[m] - p[m];
+    /* Inside, the slip itself: t − p would lose what is below a unit in the last place of the impulse. */
+    for (int m = 0; m < 2 && inside < R(1); m++) off[m] = inside * c->t[m] - p[m];
     axle = w->rim[0] * p[0] + w->rim[1] * p[1] + w->inertia * (l->free_speed - speed) - l->viscous * speed +
            drive_at(l, speed);
     pushed = axle + w->inertia * speed;
@@ -108,11 +120,13 @@ INLINE real look(contact_in_pass *restrict c, const friction_wheel *w, const fri
     c->firm = R(0);
     if (inside >= R(1)) {
         const real lateral = w->rolling[0] * off[1] - w->rolling[1] * off[0];
-        const real slip = c->locked ? off[0] * off[0] + off[1] * off[1] : lateral * lateral;
-        c->firm = slip * w->mobility * w->mobility * (c->locked ? w->row_mass[0] : w->lateral_mass);
+        const real held = off[0] * off[0] * w->row_mass[0] + off[1] * off[1] * w->row_mass[1];
+        c->firm = w->mobility * w->mobility * (c->locked ? held : lateral * lateral * w->lateral_mass);
+        if (c->length > R(0) && !c->locked) c->firm = least_of(c->firm, beyond_grip(w, l->grip, p));
     }
-    return (off[0] * off[0] + off[1] * off[1] + HIDDEN * HIDDEN * size) * w->mobility + c->firm +
-           (axle - c->axle) * (axle - c->axle) / w->inertia;
+    c->rest = (off[0] * off[0] + off[1] * off[1] + HIDDEN * HIDDEN * size) * w->mobility +
+              (axle - c->axle) * (axle - c->axle) / w->inertia;
+    return c->rest + c->firm;
 }
 
 /* Along n the impulse is the grip; across n it turns with the slip. */
@@ -285,12 +299,13 @@ static bool is_solved(const friction_search *at, real residual, real times) {
 
 /* All that rounding leaves to find, where contacts hold each other with many times the free motion, or rollers drag so
  * little that single does not tell it from nothing. */
-static bool is_resolved(const friction_search *at, const contact_in_pass contacts[], real residual) {
-    real stress = R(0);
+static bool is_resolved(friction_search *at, contact_in_pass contacts[]) {
+    real stress = R(0), residual = R(0);
+    (void)look_at_all(at, contacts);
     for (int32_t i = 0; i < at->count; i++) {
         const real *p = at->impulse[i];
         stress += (p[0] * p[0] + p[1] * p[1]) * at->wheel[i].mobility;
-        residual -= contacts[i].firm;
+        residual += contacts[i].rest;
     }
     return residual + square(imbalance(at)) <= RESOLVED * RESOLVED * at->scale + ROUNDED * ROUNDED * stress;
 }
@@ -341,7 +356,7 @@ RARE bool search_along_path(friction_search *at, contact_in_pass contacts[], int
         if (pass_exactly(at, contacts, TRIED, passes)) return true;
         if (ahead == AHEAD && is_solved(at, look_at_all(at, contacts), CLOSE)) return true;
         go_back(at, &kept);
-        if (ahead == AHEAD && is_resolved(at, contacts, look_at_all(at, contacts))) return true;
+        if (ahead == AHEAD && is_resolved(at, contacts)) return true;
     }
     return false;
 }

@@ -1,9 +1,15 @@
-/* The texts and traits that the lists of vehicle.h and sensors.h give each field: its name in FMUs, its key in a scene,
+/* The texts and traits that the lists of vehicle.h, sensors.h and articulated.h give each field: its name in FMUs, its key in a scene,
  * its traits. */
 #include "common.h"
+#include "laconic/articulated.h"
 
+#if LACONIC_MAX_BODIES > 0
+#define EVERY_FIELD(X) LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X) LACONIC_ARTICULATED_FIELDS(X)
+#define TABLE_LENGTH LACONIC_ARTICULATED_FIELD_COUNT
+#else
 #define EVERY_FIELD(X) LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X)
 #define TABLE_LENGTH LACONIC_SENSOR_FIELD_COUNT
+#endif
 
 /* RETURN_ROW(type, number, rows) ends a function that returns the row of a number, all zero where there is none. In C
  * the rows are a table; C++ cannot name a row by its number, so there each is a case. */
@@ -52,6 +58,9 @@ const char *laconic_field_name(laconic_field field) { return text_or_empty(name_
 #define PATH_IMU_ARRAY(member) PATH_IMU(member) "[#]"
 #define PATH_ENCODER(member) "sensors.encoder." #member
 #define PATH_WHEEL_ENCODER(member) PATH_ENCODER(member) "[#]"
+#define PATH_BODY(member) "vehicle.body[#]." #member
+#define PATH_HINGE(member) #member "[#]"
+#define PATH_HINGE_START(member) "initial." #member "[#]"
 #define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(row_text, number, PATH_##of(member))
 
 static const row_text *path_row(laconic_field field) { RETURN_ROW(row_text, field, EVERY_FIELD(PATH)) }
@@ -76,6 +85,9 @@ const char *laconic_field_path(laconic_field field) { return text_or_empty(path_
 #define ITEMS_IMU_ARRAY(member) sizeof(((laconic_imu_settings *)NULL)->member) / sizeof(real)
 #define ITEMS_ENCODER(member) 0
 #define ITEMS_WHEEL_ENCODER(member) LACONIC_MAX_WHEELS
+#define ITEMS_BODY(member) LACONIC_MAX_BODIES
+#define ITEMS_HINGE(member) sizeof(((laconic_articulated_input *)NULL)->member) / sizeof(real)
+#define ITEMS_HINGE_START(member) sizeof(((laconic_articulated_start *)NULL)->member) / sizeof(real)
 #define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF(number)(ROW(laconic_field_traits, number, \
                                {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}))

@@ -51,6 +51,53 @@ static void energy_never_grows_on_a_slope_and_its_balance_closes(void) {
     }
 }
 
+/* Rollers that hardly drag hold an impulse of former steps, beside which the slip of a step is less than a unit in the
+ * last place: single precision took it for sticking, and the impulse went on to push the vehicle. */
+static void assert_that_forces_of_former_steps_do_not_push(laconic_plant *plant, const double grip_N[][2]) {
+    const laconic_input none = no_input();
+    const double first = kinetic_J(plant);
+    for (int32_t i = 0; i < 2 * plant->friction.wheel_count; i++)
+        plant->slip.grip_N[i / 2][i % 2] = REAL(grip_N[i / 2][i % 2]);
+    for (int n = 0; n < 50; n++) {
+        const double before = kinetic_J(plant);
+        run(plant, &none, 1);
+        TEST_ASSERT_TRUE(kinetic_J(plant) <= before + (double)EITHER(1e-14, 1e-6) * first);
+    }
+}
+
+static void wheels_that_hold_each_other_by_their_rollers_bring_no_energy(void) {
+    const double grip_N[4][2] = {{0, -0.372}, {0, 0}, {0, 0.401}, {0, 0}};
+    laconic_vehicle v = {0};
+    v.mass_kg = REAL(0.49);
+    v.yaw_inertia_kgm2 = REAL(0.0465);
+    v.wheel_radius_m = REAL(0.0433);
+    v.wheel_inertia_kgm2 = REAL(2.24e-6);
+    v.ground.friction_coefficient = REAL(1.43);
+    v.ground.roller_drag = REAL(3e-4);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.324, 0, 0, PI / 2);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0.324, PI / 2, PI / 2);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, -0.324, 0, PI, PI / 2);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.17, 0.214, -2.45, PI / 2);
+    laconic_plant plant = started(v, 3.64e-3, -0.0018, 0.0048, -0.0229);
+    assert_that_forces_of_former_steps_do_not_push(&plant, grip_N);
+}
+
+static void a_locked_wheel_on_rollers_that_hardly_drag_brings_no_energy(void) {
+    const double grip_N[1][2] = {{-0.0191, -108}};
+    laconic_vehicle v = {0};
+    v.mass_kg = REAL(14.0925124);
+    v.yaw_inertia_kgm2 = REAL(2.0620902);
+    v.wheel_radius_m = REAL(0.0449423276);
+    v.wheel_inertia_kgm2 = REAL(5.4595020e-4);
+    v.ground.friction_coefficient = REAL(1.18468025);
+    v.ground.roller_drag = REAL(4.54464726e-4);
+    v.ground.axle_friction_Nm = REAL(0.366038584);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.430856611, 0, -PI / 2, PI / 4);
+    laconic_plant plant = started(v, 1.93654127e-3, -1.0034e-8, 0.0162131924, -0.0143944609);
+    plant.slip.wheel_speed_rad_per_s[0] = 0;
+    assert_that_forces_of_former_steps_do_not_push(&plant, grip_N);
+}
+
 static void the_energy_drawn_from_the_supply_balances(void) {
     laconic_vehicle v = with_drive(robotino(0.8, 0.3, 0.05));
     laconic_input input = no_input();
@@ -318,6 +365,8 @@ int main(void) {
     RUN_TEST(rest_below_breakaway_holds_to_the_last_bit);
     RUN_TEST(coasting_ends_in_exact_rest);
     RUN_TEST(energy_never_grows_on_a_slope_and_its_balance_closes);
+    RUN_TEST(wheels_that_hold_each_other_by_their_rollers_bring_no_energy);
+    RUN_TEST(a_locked_wheel_on_rollers_that_hardly_drag_brings_no_energy);
     RUN_TEST(the_energy_drawn_from_the_supply_balances);
     RUN_TEST(at_stall_the_current_is_the_limit);
     RUN_TEST(an_open_motor_keeps_only_its_viscous_friction);

@@ -185,6 +185,28 @@ static void test_no_order_but_a_commit_uses_a_model_that_is_wrong(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+static uint8_t seen;
+
+/* Called when the node identifies itself, and last of all while it handles COMMIT. */
+static const laconic_method *look_at_the_state(int32_t number) {
+    seen = on.node.state;
+    return laconic_method_by_number(number);
+}
+
+/* Whoever looks during a call, such as an interrupt or a function of the configuration, sees the fault. */
+static void test_a_wrong_model_is_shown_as_a_fault_while_a_frame_is_handled(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    on.config.method = on.node.config.method = look_at_the_state;
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.plant.vehicle.mass_kg *= 2;
+    wait_two_rounds();
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+    seen = 255;
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, seen);
+    TEST_ASSERT_FALSE(on.node.model_is_wrong);
+}
+
 /* An estimate would read it with each heartbeat. That of a motion begins anew with RESET. */
 static void test_an_estimate_ends_with_the_model_that_it_is_of(void) {
     laconic_frame told;
@@ -219,6 +241,7 @@ int main(void) {
     RUN_TEST(test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range);
     RUN_TEST(test_a_configuration_that_was_wrong_is_sound_again_when_no_check_is_chosen);
     RUN_TEST(test_no_order_but_a_commit_uses_a_model_that_is_wrong);
+    RUN_TEST(test_a_wrong_model_is_shown_as_a_fault_while_a_frame_is_handled);
     RUN_TEST(test_an_estimate_ends_with_the_model_that_it_is_of);
     return UNITY_END();
 }

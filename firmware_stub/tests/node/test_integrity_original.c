@@ -21,13 +21,18 @@ static void expect_repaired(const laconic_node_config *original, const laconic_n
     TEST_ASSERT_TRUE(original->protocol == on.node.config.protocol);
 }
 
+static const laconic_method *no_method(int32_t number) {
+    (void)number;
+    return NULL;
+}
+
 static void test_a_member_of_the_configuration_that_became_smaller_or_larger_is_repaired(void) {
     const laconic_node_config usual = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 7,
                                        laconic_drive_protocol_by_number};
     laconic_node_config other[6] = {usual, usual, usual, usual, usual, usual};
     other[0].id_base = LACONIC_WIRE_ID_BASE + LACONIC_NODE_ID_STRIDE;
     other[1].can_fd = false;
-    other[2].method = NULL;
+    other[2].method = no_method;
     other[3].nonce_seed = 8;
     other[4].protocol = NULL;
     other[5].id_base = LACONIC_WIRE_ID_BASE + LACONIC_NODE_ID_STRIDE; /* of two members at once */

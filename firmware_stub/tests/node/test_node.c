@@ -20,6 +20,13 @@ static void id_bases_are_multiples_of_32(void) {
     TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 0));
 }
 
+static void a_node_has_methods(void) {
+    laconic_node_config config = {.id_base = LACONIC_WIRE_ID_BASE, .method = NULL};
+    TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
+    config.method = laconic_method_by_number;
+    TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 0));
+}
+
 static void the_node_identifies_itself(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_identity_t identity;
@@ -383,6 +390,7 @@ static void the_first_nonce_is_mixed_of_seed_and_time(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(id_bases_are_multiples_of_32);
+    RUN_TEST(a_node_has_methods);
     RUN_TEST(the_node_identifies_itself);
     RUN_TEST(nothing_starts_without_a_vehicle);
     RUN_TEST(a_sync_steps_and_is_answered_with_what_was_selected);

@@ -5,6 +5,8 @@
 #include "laconic_wire.h"
 #include "unity.h"
 
+#include <string.h>
+
 static const uint8_t key_bytes[16] = {0x2b, 0x7e, 0x15, 0x16, 0x28, 0xae, 0xd2, 0xa6,
                                       0xab, 0xf7, 0x15, 0x88, 0x09, 0xcf, 0x4f, 0x3c};
 static const uint8_t other_bytes[16] = {1};
@@ -277,6 +279,82 @@ static void the_freshness_begins_with_all_four_bytes_of_the_nonce(void) {
     TEST_ASSERT_EQUAL_UINT64((uint64_t)0x12345678U << 32, gate.freshness);
 }
 
+/* Both ends stand before the last count of their nonce; further, the count would become another nonce. */
+static void at_the_end_of_the_count_nothing_is_sealed_and_nothing_passes(void) {
+    const laconic_frame control = frame_of(LACONIC_WIRE_CONTROL, 1), sent = frame_of(LACONIC_WIRE_CHALLENGE, 7);
+    laconic_frame recorded, code;
+    begin(7);
+    laconic_gate_seal(&rig, &control, &recorded);
+    TEST_ASSERT_TRUE(passes(&control, &recorded));
+    gate.freshness = rig.freshness = ((uint64_t)7 << 32) + 0xFFFFFFFEU;
+    TEST_ASSERT_FALSE(laconic_gate_is_spent(&rig, &control));
+    TEST_ASSERT_TRUE(laconic_gate_seal(&rig, &control, &code));
+    TEST_ASSERT_TRUE(passes(&control, &code));
+    TEST_ASSERT_FALSE(laconic_gate_seal(&rig, &control, &code));
+    TEST_ASSERT_TRUE(laconic_gate_is_spent(&rig, &control));
+    rig.freshness = (uint64_t)8 << 32; /* of a rig that counts on */
+    laconic_gate_seal(&rig, &control, &code);
+    TEST_ASSERT_FALSE(passes(&control, &code));
+    TEST_ASSERT_EQUAL(1, gate.refused[LACONIC_SECOC_SPENT]);
+    TEST_ASSERT_EQUAL_STRING("freshness used up", laconic_secoc_text(LACONIC_SECOC_SPENT));
+    laconic_gate_sent(&gate, &sent); /* the same nonce again */
+    TEST_ASSERT_FALSE(passes(&control, &recorded));
+    TEST_ASSERT_EQUAL_UINT64(((uint64_t)7 << 32) + 0xFFFFFFFFU, gate.freshness);
+}
+
+static void a_new_challenge_gives_new_codes(void) {
+    const laconic_frame control = frame_of(LACONIC_WIRE_CONTROL, 1), sent = frame_of(LACONIC_WIRE_CHALLENGE, 8);
+    laconic_frame code;
+    begin(7);
+    gate.freshness = rig.freshness = ((uint64_t)7 << 32) + 0xFFFFFFFFU;
+    laconic_gate_sent(&gate, &sent);
+    laconic_gate_sent(&rig, &sent);
+    TEST_ASSERT_TRUE(laconic_gate_seal(&rig, &control, &code));
+    TEST_ASSERT_TRUE(passes(&control, &code));
+}
+
+static void frames_that_need_no_code_are_not_spent(void) {
+    const laconic_frame hello = frame_of(LACONIC_WIRE_HELLO, 1), answer = frame_of(LACONIC_WIRE_RESULT, 1);
+    laconic_frame drive = frame_of(LACONIC_WIRE_CONTROL, 0);
+    drive.id = 5;
+    begin(7);
+    rig.freshness = ((uint64_t)7 << 32) + 0xFFFFFFFFU;
+    TEST_ASSERT_FALSE(laconic_gate_is_spent(&rig, &hello));
+    TEST_ASSERT_FALSE(laconic_gate_is_spent(&rig, &answer));
+    TEST_ASSERT_FALSE(laconic_gate_is_spent(&rig, &drive));
+}
+
+static void only_frames_of_a_possible_length_are_sealed(void) {
+    laconic_frame code;
+    begin(7);
+    for (unsigned length = 0; length < 256; length++) {
+        laconic_frame frame = frame_of(LACONIC_WIRE_CONTROL, 0);
+        frame.length = (uint8_t)length;
+        TEST_ASSERT_EQUAL(length <= 8, laconic_gate_seal(&rig, &frame, &code));
+        TEST_ASSERT_FALSE(laconic_gate_take(&gate, &frame, &out));
+        TEST_ASSERT_EQUAL(length <= 8, gate.waits);
+        frame.fd = true;
+        TEST_ASSERT_EQUAL(length <= LACONIC_FRAME_BYTES, laconic_gate_seal(&rig, &frame, &code));
+    }
+}
+
+static void payloads_and_codes_that_are_too_long_have_no_code(void) {
+    static const uint8_t longer[LACONIC_SECOC_LONGEST + 1] = {0};
+    uint8_t trailer[1 + LACONIC_AES_BYTES + 1];
+    uint64_t last = 0;
+    memset(trailer, 0xA5, sizeof trailer);
+    TEST_ASSERT_FALSE(laconic_secoc_seal(&key, NUMBER, 1, longer, sizeof longer, trailer, LACONIC_SECOC_FD));
+    TEST_ASSERT_FALSE(laconic_secoc_seal(&key, NUMBER, 1, longer, 8, trailer, LACONIC_AES_BYTES + 1));
+    TEST_ASSERT_EACH_EQUAL_HEX8(0xA5, trailer, sizeof trailer);
+    TEST_ASSERT_EQUAL(LACONIC_SECOC_WRONG_CODE,
+                      laconic_secoc_open(&key, NUMBER, &last, longer, sizeof longer, trailer, LACONIC_SECOC_FD));
+    TEST_ASSERT_EQUAL(LACONIC_SECOC_WRONG_CODE,
+                      laconic_secoc_open(&key, NUMBER, &last, longer, 8, trailer, LACONIC_AES_BYTES + 1));
+    TEST_ASSERT_TRUE(laconic_secoc_seal(&key, NUMBER, 1, longer, 64, trailer, LACONIC_AES_BYTES));
+    TEST_ASSERT_EQUAL(LACONIC_SECOC_OK,
+                      laconic_secoc_open(&key, NUMBER, &last, longer, 64, trailer, LACONIC_AES_BYTES));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(aes_of_FIPS_197);
@@ -296,5 +374,10 @@ int main(void) {
     RUN_TEST(a_code_of_another_length_ends_the_wait);
     RUN_TEST(only_a_new_challenge_begins_a_new_freshness);
     RUN_TEST(the_freshness_begins_with_all_four_bytes_of_the_nonce);
+    RUN_TEST(at_the_end_of_the_count_nothing_is_sealed_and_nothing_passes);
+    RUN_TEST(a_new_challenge_gives_new_codes);
+    RUN_TEST(frames_that_need_no_code_are_not_spent);
+    RUN_TEST(only_frames_of_a_possible_length_are_sealed);
+    RUN_TEST(payloads_and_codes_that_are_too_long_have_no_code);
     return UNITY_END();
 }

@@ -150,8 +150,13 @@ static inline uint8_t bench_open(uint32_t session) {
 }
 
 static inline void bench_begin(void) {
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, laconic_method_by_number, 1905,
-                                        laconic_drive_protocol_by_number};
+    const laconic_node_config config = {.id_base = LACONIC_WIRE_ID_BASE,
+                                        .can_fd = LACONIC_NODE_CAN_FD != 0,
+                                        .method = laconic_method_by_number,
+#if LACONIC_NODE_WITH_DRIVES
+                                        .protocol = laconic_drive_protocol_by_number,
+#endif
+                                        .nonce_seed = 1905};
     now_us = 0xFFFFF000U; /* the time wraps in the first milliseconds of each test */
     laconic_node_init(&node, &config, now_us);
     bench_open(0x5E55104EU);

@@ -118,6 +118,12 @@ static void plain_frames_of_the_node_are_those_of_the_reference_client(void) {
     TEST_ASSERT_TRUE(nu[0] == 0x43 && nu[1] == 0x3F);
 }
 
+/* A build without CAN FD reads the list of every offset that it is given. */
+static void the_list_of_every_offset_exists(void) {
+    for (int offset = 0; offset < LACONIC_WIRE_OFFSETS; offset++)
+        TEST_ASSERT_TRUE(laconic_wire[offset].list < LACONIC_WIRE_CLASSIC);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_mixing_function_gives_its_test_vectors);
@@ -130,5 +136,6 @@ int main(void) {
     RUN_TEST(a_plain_frame_is_that_of_the_reference_client);
     RUN_TEST(the_key_of_a_run_is_mixed_with_the_count_of_its_start);
     RUN_TEST(plain_frames_of_the_node_are_those_of_the_reference_client);
+    RUN_TEST(the_list_of_every_offset_exists);
     return UNITY_END();
 }

@@ -309,6 +309,20 @@ static void a_line_is_written_whatever_stood_there(void) {
     TEST_ASSERT_EQUAL_MEMORY(expected, text, sizeof expected - 1);
 }
 
+/* Neither kind of CAN has frames of other lengths; above 64 bytes a line would leave its room. */
+static void only_lengths_that_a_frame_can_have_are_written(void) {
+    static const char lengths_of_fd[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+    char text[LACONIC_SLCAN_LINE];
+    feed("O\r");
+    for (unsigned length = 0; length < 256; length++) {
+        const bool of_fd = length <= 64 && memchr(lengths_of_fd, (char)length, sizeof lengths_of_fd) != NULL;
+        laconic_frame it = {.id = 0x123, .length = (uint8_t)length};
+        TEST_ASSERT_EQUAL(length <= 8, laconic_slcan_write(&slcan, &it, text) > 0);
+        it.fd = true;
+        TEST_ASSERT_EQUAL(of_fd, laconic_slcan_write(&slcan, &it, text) > 0);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
@@ -337,5 +351,6 @@ int main(void) {
     RUN_TEST(a_line_ends_with_cr_alone);
     RUN_TEST(a_remote_frame_without_bytes_is_written_without_bytes);
     RUN_TEST(a_line_is_written_whatever_stood_there);
+    RUN_TEST(only_lengths_that_a_frame_can_have_are_written);
     return UNITY_END();
 }

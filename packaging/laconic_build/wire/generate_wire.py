@@ -104,13 +104,12 @@ def rows(database: Database) -> list[str]:
     """One initializer per identifier offset; unused offsets have length 0."""
     by_offset = {message.frame_id - ID_BASE: message for message in database.messages}
     lists = [offset for offset, message in by_offset.items() if not message.is_fd]
-    lists += [offset for offset, message in by_offset.items() if message.is_fd]
     lines = []
     for offset in sorted(by_offset):
         message = by_offset[offset]
         key = KEYS.index(attribute(message, "E2EKey"))
         row = (message.length, int(message.is_fd), int("RIG" in message.senders), key,
-               attribute(message, "E2EMaxDeltaCounter"), lists.index(offset))
+               attribute(message, "E2EMaxDeltaCounter"), 0 if message.is_fd else lists.index(offset))
         lines.append(f"    [{offset}] = {{{', '.join(map(str, row))}}}, /* {message.name} */")
     return guarded(lines)
 

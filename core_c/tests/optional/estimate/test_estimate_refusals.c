@@ -102,6 +102,33 @@ static void samples_whose_half_steps_are_refused_are_counted(void) {
     TEST_ASSERT_EQUAL_UINT64(2, errors_now(&estimate, &plant).unknown);
 }
 
+static bool are_sizes(const laconic_error *error) {
+    return error->nu_rad_per_s >= 0 && error->place_m >= 0 && error->heading_rad >= 0 && error->wheel_angle_rad >= 0;
+}
+
+/* Methods of second order do not use the world force in the middle of a step, so they accept one whose effect leaves the
+ * range. The true motion follows it: the error is infinite, and it stays so. */
+static void an_error_beyond_the_range_is_infinite_and_not_nan(void) {
+    static const laconic_method *const methods[] = {&laconic_exact_flow, &laconic_exponential_kahan};
+    const laconic_vehicle v = with_motors(three_wheels());
+    for (int k = 0; k < 2; k++)
+        for (double share = 1e-30; share < 1; share *= 10) {
+            laconic_plant plant = plant_by(methods[k], &v, start_with(2, 1, 4), 0.01);
+            laconic_estimate estimate = estimate_of(&plant, 4);
+            laconic_input samples[3] = {every_input(), every_input(), every_input()};
+            ASSERT_STATUS(LACONIC_OK, laconic_estimate_run_sampled(&estimate, &plant, samples, &why));
+            samples[1].world_force_N[0] = REAL(share) * LACONIC_REAL_MAX;
+            for (int step = 0; step < 6; step++) {
+                ASSERT_STATUS(LACONIC_OK, laconic_estimate_run_sampled(&estimate, &plant, samples, &why));
+                const laconic_errors found = errors_now(&estimate, &plant);
+                TEST_ASSERT_TRUE(are_sizes(&found.now) && are_sizes(&found.largest));
+                TEST_ASSERT_TRUE(found.largest.nu_rad_per_s >= found.now.nu_rad_per_s);
+                if (step > 2) samples[1].world_force_N[0] = 0;
+            }
+            if (share > 0.05) TEST_ASSERT_TRUE(errors_now(&estimate, &plant).now.nu_rad_per_s > LACONIC_REAL_MAX);
+        }
+}
+
 static void a_twin_that_is_refused_stays(void) {
     laconic_vehicle v = with_motors(mecanum());
     v.ground.friction_coefficient = REAL(0.5);
@@ -152,6 +179,7 @@ int main(void) {
     RUN_TEST(a_half_step_that_cannot_be_prepared_is_refused);
     RUN_TEST(of_a_run_that_is_refused_midway_the_steps_that_were_taken_count);
     RUN_TEST(samples_whose_half_steps_are_refused_are_counted);
+    RUN_TEST(an_error_beyond_the_range_is_infinite_and_not_nan);
     RUN_TEST(a_twin_that_is_refused_stays);
     RUN_TEST(following_ends_as_without_an_estimate);
     return UNITY_END();

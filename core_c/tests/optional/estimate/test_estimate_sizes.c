@@ -75,59 +75,59 @@ static void doubts_and_floors_are_added(void) {
     ASSERT_NEAR(10 * ROUNDING, 0.07, found.now.place_m);
 }
 
-static void assert_no_number(const laconic_error *error) {
-    TEST_ASSERT_TRUE(isnan(error->nu_rad_per_s) && isnan(error->place_m));
-    TEST_ASSERT_TRUE(isnan(error->heading_rad) && isnan(error->wheel_angle_rad));
+static void assert_infinite(const laconic_error *error) {
+    TEST_ASSERT_TRUE(isinf(error->nu_rad_per_s) && isinf(error->place_m));
+    TEST_ASSERT_TRUE(isinf(error->heading_rad) && isinf(error->wheel_angle_rad));
 }
 
-/* Of several numbers the largest is told, but where one of them is none no other stands for it. */
-static void an_error_that_is_no_number_is_told_as_none(void) {
+/* The largest of several numbers is given, but where one of them is NaN no other stands for it. */
+static void an_error_that_is_nan_is_infinite(void) {
     const laconic_vehicle v = three_wheels();
     laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(0, 0, 0), 0.01);
     laconic_estimate estimate = estimate_of(&plant, 16);
     for (int k = 0; k < 3; k++) estimate.zeta[k] = estimate.travel[k] = NOT_A_NUMBER;
     estimate.doubt_place_m = NOT_A_NUMBER;
     const laconic_errors found = errors_now(&estimate, &plant);
-    assert_no_number(&found.now);
-    assert_no_number(&found.largest);
+    assert_infinite(&found.now);
+    assert_infinite(&found.largest);
 }
 
-static void a_rounding_that_is_no_number_is_told_as_none(void) {
+static void a_rounding_that_is_nan_is_infinite(void) {
     const laconic_vehicle v = three_wheels();
     laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(0, 0, 0), 0.01);
     laconic_estimate estimate = estimate_of(&plant, 16);
     estimate.floor_zeta = estimate.floor_travel = estimate.floor_path_m = NOT_A_NUMBER;
     laconic_errors found = errors_now(&estimate, &plant);
-    assert_no_number(&found.rounding);
-    assert_no_number(&found.now);
+    assert_infinite(&found.rounding);
+    assert_infinite(&found.now);
     estimate = estimate_of(&plant, 16);
     plant.state.travel[0].value = NOT_A_NUMBER; /* and with it each wheel's angle */
     found = errors_now(&estimate, &plant);
-    TEST_ASSERT_TRUE(isnan(found.rounding.wheel_angle_rad));
+    TEST_ASSERT_TRUE(isinf(found.rounding.wheel_angle_rad));
     plant = plant_by(&laconic_rk4, &v, start_with(0, 0, 0), 0.01);
     plant.state.y_m.value = NOT_A_NUMBER;
     TEST_ASSERT_TRUE(isnan(laconic_estimate_extent(&estimate, &plant.state)));
 }
 
 /* With friction the error is what plant and twin differ by. */
-static void a_twin_that_is_no_number_leaves_no_error(void) {
+static void a_twin_that_is_nan_is_infinitely_far_off(void) {
     laconic_vehicle v = with_motors(mecanum());
     v.ground.friction_coefficient = REAL(0.5);
     const laconic_plant plant = plant_by(&laconic_auto, &v, start_with(0, 0, 0), 0.01);
     laconic_estimate estimate = estimate_of(&plant, 16);
     for (int k = 0; k < 3; k++) estimate.twin.zeta[k].value = NOT_A_NUMBER;
-    TEST_ASSERT_TRUE(isnan(errors_now(&estimate, &plant).now.nu_rad_per_s));
+    TEST_ASSERT_TRUE(isinf(errors_now(&estimate, &plant).now.nu_rad_per_s));
     for (int i = 0; i < 4; i++) estimate.twin_slip.wheel_angle_rad[i].value = NOT_A_NUMBER;
-    TEST_ASSERT_TRUE(isnan(errors_now(&estimate, &plant).now.wheel_angle_rad));
-    TEST_ASSERT_TRUE(isnan(errors_now(&estimate, &plant).largest.wheel_angle_rad));
+    TEST_ASSERT_TRUE(isinf(errors_now(&estimate, &plant).now.wheel_angle_rad));
+    TEST_ASSERT_TRUE(isinf(errors_now(&estimate, &plant).largest.wheel_angle_rad));
 }
 
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sizes_are_of_the_component_that_is_farthest_off);
     RUN_TEST(doubts_and_floors_are_added);
-    RUN_TEST(an_error_that_is_no_number_is_told_as_none);
-    RUN_TEST(a_rounding_that_is_no_number_is_told_as_none);
-    RUN_TEST(a_twin_that_is_no_number_leaves_no_error);
+    RUN_TEST(an_error_that_is_nan_is_infinite);
+    RUN_TEST(a_rounding_that_is_nan_is_infinite);
+    RUN_TEST(a_twin_that_is_nan_is_infinitely_far_off);
     return UNITY_END();
 }

@@ -62,12 +62,14 @@ static double mass_of(fmi2Component c) {
 static void values_come_from_the_file_by_a_path_or_a_uri(void) {
     const fmu_start_value pairs[2] = {{ref("wheel_count", 0), 3}, {ref("mass_kg", 0), 12.5}};
     const size_t size = make(2, 1, TOKEN, pairs, 2, 2);
-    char uri[4][400];
+    char uri[6][400];
     snprintf(uri[0], 400, "%s", folder);
     snprintf(uri[1], 400, "file:///tmp/laconic%%20start%%20%ld/", (long)getpid());
     snprintf(uri[2], 400, "file://localhost/tmp/laconic%%20start%%20%ld", (long)getpid());
     snprintf(uri[3], 400, "file:/tmp/laconic%%20start%%20%ld//", (long)getpid());
-    for (int k = 0; k < 4; k++) {
+    snprintf(uri[4], 400, "FILE:///tmp/laconic%%20start%%20%ld", (long)getpid());
+    snprintf(uri[5], 400, "FiLe:/tmp/laconic%%20start%%20%ld", (long)getpid());
+    for (int k = 0; k < 6; k++) {
         fmi2Component c = with(size, uri[k]);
         TEST_ASSERT_NOT_NULL_MESSAGE(c, uri[k]);
         TEST_ASSERT_TRUE(mass_of(c) == 12.5);
@@ -99,6 +101,8 @@ static void uris_are_decoded_and_paths_are_not(void) {
                                            {"file:C:/no", "C:/no/start.bin"},
                                            {"file:///no%09where", "/no\twhere/start.bin"},
                                            {"files/nowhere", "files/nowhere/start.bin"},
+                                           {"FILE/nowhere", "FILE/nowhere/start.bin"},
+                                           {"&),%:/nowhere", "&),%:/nowhere/start.bin"},
                                            {"file:/", "/start.bin"},
                                            {"/no%20where", "/no%20where/start.bin"},
                                            {"/nowhere\\", "/nowhere/start.bin"},
@@ -269,6 +273,35 @@ static void a_value_that_is_cut_off_is_none(void) {
     TEST_ASSERT_NULL(with(63, folder));
 }
 
+/* Of up to 15 bytes too many none is taken for a part of a pair. */
+static void a_file_with_bytes_behind_its_pairs_is_refused(void) {
+    const fmu_start_value mass[1] = {{ref("mass_kg", 0), 2}};
+    for (size_t more = 0; more <= 17; more++) {
+        const size_t size = make(2, 0, TOKEN, mass, 1, 1);
+        memset(bytes + size - 8, 0, more);
+        seal(size + more);
+        fmi2Component c = with(size + more, folder);
+        TEST_ASSERT_TRUE((c != NULL) == (more == 0));
+        fmi2FreeInstance(c);
+    }
+}
+
+static void a_reference_of_more_than_32_bits_is_refused(void) {
+    const fmu_start_value mass[1] = {{ref("mass_kg", 0), 2}};
+    const size_t size = make(2, 0, TOKEN, mass, 1, 1);
+    bytes[8 + 32 + 4] = 1;
+    seal(size);
+    TEST_ASSERT_NULL(with(size, folder));
+}
+
+static void a_uri_with_a_zero_is_refused(void) {
+    const fmu_start_value mass[1] = {{ref("mass_kg", 0), 2}};
+    char uri[400];
+    snprintf(uri, sizeof uri, "file:///tmp/laconic%%20start%%20%ld%%00", (long)getpid());
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, mass, 1, 1), uri));
+    ASSERT_LOGGED("%%00");
+}
+
 static void a_hash_is_that_of_fnv_1a(void) {
     TEST_ASSERT_TRUE(fmu_token_hash("") == 0xCBF29CE484222325U);
     TEST_ASSERT_TRUE(fmu_token_hash("a") == 0xAF63DC4C8601EC8CU);
@@ -287,6 +320,9 @@ int main(void) {
     RUN_TEST(a_file_has_48_bytes_to_64_KiB);
     RUN_TEST(a_count_that_is_cut_off_counts_nothing);
     RUN_TEST(a_value_that_is_cut_off_is_none);
+    RUN_TEST(a_file_with_bytes_behind_its_pairs_is_refused);
+    RUN_TEST(a_reference_of_more_than_32_bits_is_refused);
+    RUN_TEST(a_uri_with_a_zero_is_refused);
     RUN_TEST(a_hash_is_that_of_fnv_1a);
     return UNITY_END();
 }

@@ -15,6 +15,7 @@ from laconic.can.rig.codes import Codes
 from laconic.can.rig.node_library import node_library
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
+from laconic.errors import ResultFails
 
 KEY, OTHER = bytes(range(16)), bytes(range(1, 17))
 CHALLENGE = can.Message(arbitration_id=ID_BASE + 13, is_extended_id=False, data=bytes((0, 0, 7, 0, 0, 9, 0, 0)))
@@ -54,6 +55,21 @@ def test_a_frame_of_the_rig_has_a_code_behind_it_as_the_page_lays_it_out():
         assert behind.data[2:] == peer_cmac(KEY, message)[:6]
     hello = can.Message(arbitration_id=ID_BASE + wire()["HELLO"].offset, is_extended_id=False, data=bytes(8))
     assert codes.behind(hello) is None
+
+
+def test_a_session_whose_codes_are_used_up_is_refused_and_a_new_challenge_mends_it():
+    codes = Codes(KEY, ID_BASE)
+    codes.heard(CHALLENGE)
+    control = can.Message(arbitration_id=ID_BASE + 2, is_extended_id=False, data=bytes(8))
+    hello = can.Message(arbitration_id=ID_BASE + wire()["HELLO"].offset, is_extended_id=False, data=bytes(8))
+    codes._gate.freshness = NONCE << 32 | 0xFFFFFFFE
+    assert codes.behind(control) is not None
+    with pytest.raises(ResultFails, match="connect again"):
+        codes.behind(control)
+    assert codes.behind(hello) is None
+    other = can.Message(arbitration_id=ID_BASE + 13, is_extended_id=False, data=bytes((0, 0, 8, 0, 0, 9, 0, 0)))
+    codes.heard(other)
+    assert codes.behind(control) is not None
 
 
 @pytest.fixture

@@ -39,6 +39,7 @@ def some_states(wheels: int) -> list[float]:
     return [3.0, -1.0, 0.5, 0.2, -0.3, 0.7, *(0.1 * i for i in range(wheels)), *(2.0 + i for i in range(wheels))]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("name", "variant"), [*(("skid_steering", each) for each in VARIANTS),
                                                ("omni_with_limits", "fmi2"), ("omni_with_limits", "fmi3")])
 def test_fmpy_validates_every_description_with_friction(name: str, variant: str, tmp_path: Path) -> None:

@@ -181,6 +181,7 @@ def test_steps_that_differ_by_rounding_only_are_the_same_step() -> None:
         assert jittered.time() == plain.time() == 10.0
 
 
+@pytest.mark.nightly
 def test_ten_million_steps_do_not_drift() -> None:
     with Importer(generic(3)) as importer:
         assert importer.set("step_s", 1 / 3) == OK

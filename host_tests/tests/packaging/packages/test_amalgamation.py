@@ -50,6 +50,7 @@ def test_it_compiles_without_a_warning_in_every_language_that_it_promises(compil
             folder=pair / "laconic")
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("compiler", "standard"), [case for case in CASES if case[1][-2:] in ("99", "11", "20")])
 def test_every_public_header_stands_alone_in_every_language_that_it_promises(compiler, standard, tmp_path):
     options = ["-x", language(compiler), f"-std={standard}", *STRICT, "-I", CORE / "include", "-fsyntax-only"]
@@ -79,6 +80,7 @@ def test_without_any_option_for_bits_it_has_the_bits_of_the_core(compiler, real,
     assert run("./hash", folder=pair).split() == BITS[real]
 
 
+@pytest.mark.nightly
 def test_what_firmware_and_fmus_leave_out_changes_no_bit_of_the_other_methods(pair):
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
@@ -104,6 +106,7 @@ int main(void) {
 """
 
 
+@pytest.mark.nightly
 def test_one_program_holds_both_scalar_types_by_the_pair_with_names_of_its_own(pair):
     (pair / "both.c").write_text(BOTH, encoding="utf-8")
     files = ["both.c", "laconic/laconic.c", "laconic/laconic_single.c"]

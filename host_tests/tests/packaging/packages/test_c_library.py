@@ -133,6 +133,7 @@ def test_headers_licence_and_the_two_files_are_installed_and_each_component_by_i
         "laconic.h", "laconic.c", "laconic_single.h", "laconic_single.c"}
 
 
+@pytest.mark.nightly
 def test_the_core_alone_needs_no_python_and_makes_a_shared_library(shared, tmp_path):
     source = user(tmp_path / "user", FOUND.format(component="core_single"), "core_single")
     assert run(built_user(source, f"-DCMAKE_PREFIX_PATH={shared}")) == "sound\n"
@@ -159,6 +160,7 @@ FetchContent_MakeAvailable(laconic)
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
 @pytest.mark.parametrize(("taken", "component", "flags"), [
     (FETCHED.format(folder=SOURCE_DIR), "core", "-std=gnu11 -O1 -ffast-math -march=native"),

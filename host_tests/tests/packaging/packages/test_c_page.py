@@ -10,6 +10,8 @@ import pytest
 
 from laconic.base.paths import SOURCE_DIR, built
 
+pytestmark = pytest.mark.nightly
+
 PAGE = (SOURCE_DIR / "docs" / "c.md").read_text(encoding="utf-8")
 README = (SOURCE_DIR / "README.md").read_text(encoding="utf-8")
 

@@ -20,6 +20,8 @@ from laconic.base.paths import SOURCE_DIR, built
 from laconic_build.c.embedded import TOOLS, package, values_of
 from laconic_build.c.facts import facts
 
+pytestmark = pytest.mark.nightly
+
 FACTS = json.loads((SOURCE_DIR / "packaging" / "facts.json").read_text(encoding="utf-8"))
 HEADER = (SOURCE_DIR / "core_c/include/laconic/laconic.h").read_text(encoding="utf-8")
 VERSION = re.findall(r'^#define LACONIC_VERSION "(.*)"$', HEADER, re.MULTILINE)[0]

@@ -8,6 +8,8 @@ import pytest
 
 from laconic_build.page.browser import Browser
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture
 def drawing(page: Browser) -> Browser:

@@ -17,6 +17,8 @@ from laconic.base.paths import SOURCE_DIR, build_dir
 from laconic.core import load
 from laconic_build.page.browser import Browser
 
+pytestmark = pytest.mark.nightly
+
 
 def pose(page: Browser) -> list[float]:
     """Place of the centre of mass and heading, all digits."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from conftest import PAGE
 
+pytestmark = pytest.mark.nightly
+
 SET = """const field = document.getElementById(arguments[0]);
 field.value = arguments[1];
 for (const type of ['input', 'change']) field.dispatchEvent(new Event(type, {bubbles: true}));

@@ -11,6 +11,8 @@ from conftest import PAGE
 from laconic_build.page.browser import BROWSER, DRIVER
 from laconic_build.page.figures import figures_of, page_figures, text_of
 
+pytestmark = pytest.mark.nightly
+
 FRAME_MS = 1000.0 / 60.0
 
 

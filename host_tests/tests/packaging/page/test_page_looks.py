@@ -7,6 +7,8 @@ from conftest import PAGE
 
 from laconic_build.page.browser import Browser
 
+pytestmark = pytest.mark.nightly
+
 SHOTS = PAGE.parent
 SIZES = [(390, 844), (1400, 900)]
 

@@ -33,7 +33,12 @@ OF_THE_READER = {"my.toml": "scenes/kuka_youbot.toml", "robot.urdf": ("docs/tuto
 """Files that pages call by these names: a file of the project, or a page's first snippet in a language."""
 KNOWN = "".join((SOURCE_DIR / "python" / name).read_text(encoding="utf-8") for name in (
     "requirements.in", "requirements-peers.in"))
-PAGES_THAT_RUN = sorted({snippet.page for snippet in ALL if snippet.runs_here})
+SLOW = {"scenes", "optimise", "control", "rig", "how-to", "play-odrive", "play-robomaster", "play-canopen", "rig-wiring", "sweep",
+        "enclosures"}
+"""Pages whose snippets take more than some seconds."""
+PAGES_THAT_RUN = [pytest.param(page, id=str(page.relative_to(SOURCE_DIR)),
+                               marks=[pytest.mark.nightly] if page.stem in SLOW else [])
+                  for page in sorted({snippet.page for snippet in ALL if snippet.runs_here})]
 
 
 @dataclass
@@ -148,7 +153,7 @@ def joined(base: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
     return base
 
 
-@pytest.mark.parametrize("page", PAGES_THAT_RUN, ids=lambda page: str(page.relative_to(SOURCE_DIR)))
+@pytest.mark.parametrize("page", PAGES_THAT_RUN)
 def test_what_a_page_shows_does_what_the_page_says(page: Path, reader: Reader,
                                                    capsys: pytest.CaptureFixture[str]) -> None:
     for snippet in (each for each in ALL if each.page == page):

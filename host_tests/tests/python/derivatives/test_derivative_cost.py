@@ -9,6 +9,8 @@ from laconic.scene.methods import STIFF_8
 from laconic.tools.report.counting import cachegrind_present, instructions_of
 from laconic.tools.verify.exact.trials import METHODS
 
+pytestmark = pytest.mark.nightly
+
 FEW, MANY = 100, 300  # calls: what a count of one run has in common with another's cancels
 LIMIT = 6.0           # steps
 LIMITS = {STIFF_8: 6.6}  # rounds at four nodes, in which a direction costs as much as the step

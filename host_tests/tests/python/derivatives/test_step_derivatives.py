@@ -42,6 +42,7 @@ def carriage(real="double", method="auto", **more):
     return core.plant(core.vehicle({**CARRIAGE, **more}), method, 0.01, nu_rad_per_s=(1.0, -0.5, 2.0), heading_rad=0.4)
 
 
+@pytest.mark.nightly
 def test_tangents_of_every_method_and_kind_of_vehicle_agree_with_differences_in_50_digits():
     random, worst = np.random.default_rng(5), {}
     for trial, plant in islice(trials(load()), TRIALS):
@@ -152,6 +153,7 @@ def test_what_is_no_direction_is_refused_in_one_line(message):
     assert str(caught.value).startswith(message)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("damping, force_N, moment_Nm", [(0.0, 10.0, -8.0), (0.02, 168.0, 0.0), (0.02, 200.0, 0.0)])
 def test_rounds_of_exponential_gauss_8_that_do_not_settle_are_derived_as_they_are(monkeypatch, damping, force_N,
                                                                                   moment_Nm):

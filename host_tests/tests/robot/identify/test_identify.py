@@ -50,6 +50,7 @@ def test_a_payload_does_not_change_how_the_robots_origin_rolls():
         rotations_of(scene.core(), scene.vehicle, moved), abs=1e-13)
 
 
+@pytest.mark.nightly
 def test_95_percent_intervals_hold_the_truth_in_about_95_percent_of_50_made_up_robots():
     held = [each for trial in trials(50, seed=1, runs=3) for each in trial.held()]
     three_sigma = 3.0 * np.sqrt(0.95 * 0.05 / len(held))

@@ -11,6 +11,8 @@ from laconic.scene.methods import EXPLICIT
 from laconic.tools.report import filter_cost
 from laconic.tools.report.workshop import M4F, Workshop
 
+pytestmark = pytest.mark.nightly
+
 MOST = {"predict": 27_000, "encoders": 7_000, "yaw_rate": 3_500}  # instructions, of three wheels, explicit
 MOST_STACK, MOST_FLASH, MOST_RAM = 3_000, 30_000, 2_048           # bytes, of one method
 MOST_WHOLE = 115_000                                              # of all methods

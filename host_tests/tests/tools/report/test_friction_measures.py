@@ -14,6 +14,8 @@ from laconic.tools.report import accuracy, friction_accuracy, friction_cost, rob
 from laconic.tools.report.targets import friction_targets
 from laconic.tools.report.workshop import HOST
 
+pytestmark = pytest.mark.nightly
+
 
 def test_the_order_through_a_current_limit_and_on_smooth_slip_is_printed_and_is_one(
         capsys: pytest.CaptureFixture[str]) -> None:

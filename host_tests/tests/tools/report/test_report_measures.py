@@ -32,6 +32,8 @@ from laconic.tools.report.targets import (
 from laconic.tools.report.workshop import HOST
 from laconic.tools.report.writing import write
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.fixture(scope="module")
 def ladder() -> list[dict]:

@@ -24,6 +24,8 @@ from laconic.tools.report.plan import plan
 from laconic.tools.report.svg import SIZE, svg
 from laconic.tools.report.writing import write
 
+pytestmark = pytest.mark.nightly
+
 SCENE = "turtlebot3_burger"
 PHONE_CSS_PX, CSS_PX_PER_INCH = 390, 96
 

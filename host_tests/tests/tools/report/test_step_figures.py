@@ -12,6 +12,8 @@ from laconic.tools.report.boards import board_row
 from laconic.tools.report.counting import cachegrind_present, host_instructions
 from laconic.tools.report.workshop import HOST, M4F, Target, Variant, Workshop
 
+pytestmark = pytest.mark.nightly
+
 HOST_MOST = {("double", "whole"): 593, ("double", "trimmed"): 582, ("single", "whole"): 575}
 BOARD_MOST = {  # bytes
     ("-O2", "whole"): {"instructions": 461, "stack_measured": 168, "worst_stack": 496, "step_code": 4600},

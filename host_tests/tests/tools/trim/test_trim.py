@@ -92,6 +92,7 @@ def test_the_constant_tables_hold_the_prepared_structs_to_the_last_bit(tmp_path:
     assert bytes.fromhex(run_tool([str(tmp_path / "dump")])) == expected
 
 
+@pytest.mark.nightly
 @needs_gcc
 def test_a_workshop_may_be_named_by_a_relative_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
@@ -128,6 +129,7 @@ def test_a_trimmed_core_with_friction_ends_where_the_plant_does(workshop: Worksh
     assert speeds == [np.array(speed).byteswap().tobytes().hex() for speed in plant.wheel_speeds()]
 
 
+@pytest.mark.nightly
 @needs_board
 def test_on_a_cortex_m4f_a_friction_step_has_the_hosts_bits_and_nothing_foreign_is_linked(
         workshop: Workshop, tmp_path: Path):
@@ -195,6 +197,7 @@ def test_a_program_of_the_other_scalar_type_does_not_compile_with_the_model(tmp_
     run_tool([*command, "-DLACONIC_SINGLE"], tmp_path)
 
 
+@pytest.mark.nightly
 @needs_board
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
 def test_cmake_builds_the_library_for_a_board_with_another_trees_environment(tmp_path: Path):

@@ -42,6 +42,7 @@ def test_the_command_writes_the_two_files_into_a_folder_for_programs(
         assert (tmp_path / "laconic" / name).read_bytes() == built(f"amalgamation/{name}").read_bytes()
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_the_commands_of_the_page_make_a_program_for_one_scene_with_the_cores_bits(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ import can
 
 from laconic.can.rig.frames import FrameBox
 from laconic.can.rig.node_library import node_library
-from laconic.errors import BadInput
+from laconic.errors import BadInput, ResultFails
 
 KEY_DIGITS = 32
 
@@ -41,6 +41,9 @@ class Codes:
         self._lib.laconic_gate_sent(self._gate, self._frame.put(message))
 
     def behind(self, message: can.Message) -> can.Message | None:
-        """The frame that must follow one of the rig; None where none must."""
-        made = self._lib.laconic_gate_seal(self._gate, self._frame.put(message), self._code.c)
+        """The frame that must follow one of the rig; None where none must. Refuses a frame for which no code is left."""
+        frame = self._frame.put(message)
+        if self._lib.laconic_gate_is_spent(self._gate, frame):
+            raise ResultFails("the codes of this session are used up after 4294967295 frames; connect again for new ones")
+        made = self._lib.laconic_gate_seal(self._gate, frame, self._code.c)
         return self._code.message() if made else None
