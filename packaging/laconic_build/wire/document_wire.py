@@ -143,7 +143,7 @@ def examples(client: reference.Client) -> str:
 def page() -> str:
     """The whole text."""
     client = reference.Client(bus=None)
-    database = load(HERE.parent / "laconic.dbc")
+    database = load(PAGE.parents[1] / "firmware_stub" / "laconic.dbc")
     messages = sorted(database.messages, key=lambda message: message.frame_id)
     result, fields = database.get_message_by_name("RESULT"), field_choices(database)
     status = choices(result.get_signal_by_name("status"))

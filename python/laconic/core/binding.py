@@ -85,8 +85,7 @@ class Core:
         return load, (self.real,)
 
     def _method_names(self) -> tuple[str, ...]:
-        numbers = range(64)
-        methods = (self.lib.laconic_method_by_number(n) for n in numbers)
+        methods = (self.lib.laconic_method_by_number(n) for n in range(self.lib.LACONIC_METHOD_COUNT))
         return tuple(self.text(m.name) for m in methods if m != self.ffi.NULL)
 
     def fields_of(self, table: str) -> list[Field]:

@@ -10,6 +10,7 @@ import pytest
 
 import laconic
 from laconic.base.paths import SCENE_DIR
+from laconic.scene.methods import EXPLICIT
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -37,7 +38,7 @@ def rates(robot, nu, heading, inputs):
 
 def test_the_derivative_is_the_slope_of_a_step(robot):
     step_s = 1e-6
-    plant = robot.plant("rk4", step_s, nu_rad_per_s=NU, heading_rad=HEADING)
+    plant = robot.plant(EXPLICIT, step_s, nu_rad_per_s=NU, heading_rad=HEADING)
     plant.run(INPUTS)
     slope = (np.array([*plant.nu, plant.pose.x_m, plant.pose.y_m, plant.pose.heading_rad])
              - [*NU, 0.0, 0.0, HEADING]) / step_s

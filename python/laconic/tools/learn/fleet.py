@@ -14,6 +14,7 @@ from laconic.batch.given import lane_count, thread_count
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number
 from laconic.errors import BadInput
+from laconic.scene.methods import STIFF_4
 from laconic.tools.learn.task import Motion, Rules, checked_actions, distance_of, has_left, has_reached, observed
 from laconic.tools.learn.variants import Spread, vehicles_of
 
@@ -27,7 +28,7 @@ class Fleet(OwnMemory):
     """
 
     def __init__(self, lanes: int, scene: str | Path = "robotino2", *, action_s: float = 0.05, step_s: float = 0.005,
-                 method: str = "exponential-kahan-4", real: str = "double",
+                 method: str = STIFF_4, real: str = "double",
                  spreads: Mapping[str, Spread] | None = None,
                  variants: int = 64, variant_seed: int = 0, threads: int = 1, **rules: float):
         known = {field.name for field in fields(Rules)}
