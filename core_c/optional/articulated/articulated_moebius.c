@@ -12,7 +12,10 @@
  *
  * The error of a symmetric step has even powers of h alone, so (4 · two half steps − one step)/3 is of fourth order, for η,
  * angles and means. The mean of η is η + κ d, κ = φ2/φ1: exact for decay alone, where the mean of both ends is wrong. Rows
- * left over hold on average over the base step, C(η + d/2) = 0, and are restored at the end.
+ * left over hold on average over the base step, C(η + d/2) = 0, and are restored at the end, which costs an order.
+ *
+ * Extrapolation would amplify a swing that the step does not resolve (by 5/3). Where a spring swings faster than the step
+ * the two half steps stand as they are: of second order, and stable at any stiffness.
  *
  * J follows from f itself, exactly, as f is quadratic: J e = (f(η + e) − f(η − e))/2. */
 #include "articulated_circle.h"
@@ -276,18 +279,19 @@ static void start_point(moebius_point *p, const laconic_articulated_model *m, co
     }
 }
 
-static real extrapolated_number(real twice, real once) { return twice + (twice - once) * (R(1) / R(3)); }
+static real extrapolated_number(real twice, real once, real share) { return twice + (twice - once) * share; }
 
 static void combine_points(articulated_increment *by, const laconic_articulated_model *m,
                            const laconic_articulated_state *state, const moebius_point *once,
-                           const moebius_point *twice, const moebius_means means[3]) {
+                           const moebius_point *twice, const moebius_means means[3], real share) {
     for (int32_t i = 0; i < m->dof; i++)
-        by->eta[i] = extrapolated_number(twice->eta[i] - state->eta[i].value, once->eta[i] - state->eta[i].value);
+        by->eta[i] = extrapolated_number(twice->eta[i] - state->eta[i].value, once->eta[i] - state->eta[i].value,
+                                         share);
     for (int32_t b = 0; b < m->body_count; b++)
-        by->turn_rad[b] = extrapolated_number(twice->turn_rad[b], once->turn_rad[b]);
+        by->turn_rad[b] = extrapolated_number(twice->turn_rad[b], once->turn_rad[b], share);
     for (int32_t b = 0; b <= m->body_count; b++) {
         const vector mean = scaled(R(0.5), plus(means[1].mean[b], means[2].mean[b]));
-        by->mean[b] = plus(mean, scaled(R(1) / R(3), minus(mean, means[0].mean[b])));
+        by->mean[b] = plus(mean, scaled(share, minus(mean, means[0].mean[b])));
     }
     by->bend = plus(scaled(R(1.5), minus(means[2].mean[0], means[1].mean[0])),
                     scaled(R(0.25), plus(means[1].slope, means[2].slope)));
@@ -308,7 +312,7 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
     if (status == LACONIC_OK) status = base_step_of(&twice, &means[1], m, &factors[1], course, from, half, why);
     if (status == LACONIC_OK) status = base_step_of(&twice, &means[2], m, &factors[1], course, from + half, half, why);
     if (status != LACONIC_OK) return status;
-    combine_points(&by, m, state, &once, &twice, means);
+    combine_points(&by, m, state, &once, &twice, means, h * m->fastest_swing_per_s > R(1) ? R(0) : R(1) / R(3));
     laconic_articulated_begin_moment(&moment, course, m);
     const articulated_drive *end = drive_at(&moment, course, m, from + share);
     laconic_articulated_turn_coordinated(&by, m, state, end);

@@ -110,7 +110,7 @@ static real form_size(const laconic_form *f) {
 
 /* No constant, and no product of two, is beyond the range. */
 static bool all_usable(const laconic_articulated_model *m) {
-    real sum = form_size(&m->inertia) + form_size(&m->drag) + m->length_m + m->fastest_decay_per_s;
+    real sum = form_size(&m->inertia) + form_size(&m->drag) + m->length_m + m->fastest_decay_per_s + m->fastest_swing_per_s;
     for (int k = 0; k < 3; k++) sum += size(m->column[k]) + m->decay_per_s[k];
     for (int32_t b = 0; b < m->body_count; b++) {
         const laconic_link *link = &m->link[b];
