@@ -209,6 +209,7 @@ typedef struct laconic_articulated_model {
  *   OVERFLOW               numbers of a body or wheel
  *   COORDINATED_ON_BODY    a coordinated hinge whose parent is not the carriage
  *   COORDINATED_WHEEL      a fixed wheel of a coordinated body does not roll along ξ with its axle line through the hinge
+ *   COORDINATED_TOO_FEW    the carriage's own wheels and coordinated ones together leave more than one motion
  *   MASSLESS_HINGE         an own hinge turns without inertia
  *   STEERED_TOO_OFTEN      fixed wheels under free or motor hinges hold the carriage at nearly every angle: three
  *                          motor-driven modules, or two behind which the carriage has an axle

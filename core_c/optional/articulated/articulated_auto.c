@@ -54,8 +54,8 @@ static laconic_status explicit_part(laconic_articulated_state *state, const laco
     if (!is_too_long(status)) return status;
     const real longest = found->limit / course->step_s;
     p->part = part / 2U;
-    while (p->part > WHOLE_STEP / MOST_PARTS && unit * (real)p->part > longest) p->part /= 2U;
-    p->stiff = p->part <= WHOLE_STEP / MOST_PARTS && unit * (real)p->part > longest;
+    while (p->part > WHOLE_STEP / MOST_PARTS && !(unit * (real)p->part <= longest)) p->part /= 2U;
+    p->stiff = p->part < WHOLE_STEP / MOST_PARTS || !(unit * (real)p->part <= longest); /* or a rate is NaN */
     return LACONIC_OK;
 }
 

@@ -122,6 +122,19 @@ static bool all_usable(const laconic_articulated_model *m) {
     return fits_squared(sum);
 }
 
+/* A twist commands one motion: wheels must hold the carriage to it. Axle lines that a posture happens to join count. */
+static laconic_status check_held(const laconic_articulated_model *m, laconic_refusal *why) {
+    int32_t lines = 3 - m->column_count;
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        bool fixed = false;
+        for (int32_t i = 0; i < m->wheel_count; i++)
+            fixed = fixed || (m->wheel[i].body == b && square(m->wheel[i].axle) > R(0));
+        if (fixed && m->link[b - 1].motion == LACONIC_MOTION_COORDINATED) lines++;
+    }
+    if (!m->coordinated || lines >= 2) return LACONIC_OK;
+    return refuse(why, LACONIC_COORDINATED_TOO_FEW, (laconic_field)LACONIC_FIELD_OF_BODY_COUNT, 0, (real)lines, R(2));
+}
+
 static void count_velocities(laconic_articulated_model *m) {
     if (m->coordinated) m->carriage_dof = 1;
     m->dof = m->carriage_dof + m->own_count;
@@ -140,6 +153,7 @@ laconic_status laconic_articulated_prepare(laconic_articulated_model *model,
     laconic_articulated_wheels(&m, vehicle);
     add_carriage_wheels(&m);
     status = laconic_articulated_links(&m, vehicle, why);
+    if (status == LACONIC_OK) status = check_held(&m, why);
     if (status != LACONIC_OK) return status;
     count_velocities(&m);
     if (!all_usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));

@@ -121,8 +121,8 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     articulated_sweep s, start;
     articulated_moment moment;
     const real h = share * course->step_s;
-    const direction heading = course->start.rotates || course->end.rotates ? direction_of_heading(&state->heading)
-                                                                           : direction_with(R(1), R(0));
+    const bool rotates = course->start.rotates || (!course->constant && course->end.rotates);
+    const direction heading = rotates ? direction_of_heading(&state->heading) : direction_with(R(1), R(0));
     direction facing = heading;
     real eta0[LACONIC_MAX_VELOCITIES], eta[LACONIC_MAX_VELOCITIES], rate[LACONIC_MAX_VELOCITIES];
     real correction[LACONIC_MAX_VELOCITIES];

@@ -163,6 +163,15 @@ static void a_coordinated_wheel_rolls_along_its_body(void) {
     assert_named(LACONIC_COORDINATED_ON_BODY, OF(BODY_PARENT), 4, &v, "vehicle.body[4].parent", "prescribed");
 }
 
+static void a_twist_needs_wheels_that_hold_the_carriage_to_it(void) {
+    laconic_articulated_vehicle v = swerve(LACONIC_HINGE_COORDINATED, 1);
+    assert_named(LACONIC_COORDINATED_TOO_FEW, OF(BODY_COUNT), 0, &v, "vehicle.body: 1 axle lines", "2 are needed");
+    v = swerve(LACONIC_HINGE_COORDINATED, 2);
+    ASSERT_STATUS(LACONIC_OK, prepared(&v));
+    v = tricycle(LACONIC_HINGE_COORDINATED);
+    ASSERT_STATUS(LACONIC_OK, prepared(&v));
+}
+
 static void wheels_of_the_carriage_are_named_as_the_vehicle_counts_them(void) {
     laconic_articulated_vehicle v = two_wheeler();
     hang_caster(&v, 0.22, 0, 0.04);
@@ -221,6 +230,7 @@ int main(void) {
     RUN_TEST(massless_steering_is_prescribed_or_follows);
     RUN_TEST(three_motor_driven_modules_are_refused_and_two_are_sound);
     RUN_TEST(a_coordinated_wheel_rolls_along_its_body);
+    RUN_TEST(a_twist_needs_wheels_that_hold_the_carriage_to_it);
     RUN_TEST(wheels_of_the_carriage_are_named_as_the_vehicle_counts_them);
     RUN_TEST(friction_is_refused);
     RUN_TEST(methods_have_names_and_refuse_bad_steps);
