@@ -22,7 +22,7 @@
 
 #if LACONIC_MAX_BODIES > 0
 
-#define UNKNOWNS (2 * LACONIC_MAX_VELOCITIES)
+#define MOEBIUS_UNKNOWNS (2 * LACONIC_MAX_VELOCITIES)
 
 /* A motion within a step; `turn_rad` since the step's start. */
 typedef struct moebius_point {
@@ -121,7 +121,7 @@ static void jacobian_column(real *column, articulated_sweep *s, const laconic_ar
 }
 
 /* Solves a[n][n + 1] by elimination with pivots; false where it is singular. */
-static bool eliminate(real a[UNKNOWNS][UNKNOWNS + 1], real *x, int32_t n) {
+static bool eliminate_unknowns(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], real *x, int32_t n) {
     for (int32_t c = 0; c < n; c++) {
         int32_t p = c;
         for (int32_t r = c + 1; r < n; r++)
@@ -148,7 +148,7 @@ static bool eliminate(real a[UNKNOWNS][UNKNOWNS + 1], real *x, int32_t n) {
 }
 
 /* ¼h² K, K = Σ stiffness (ω_b − ω_p)(ω_b − ω_p)ᵀ, from the rates that each velocity alone gives a hinge. */
-static void add_springs(real a[UNKNOWNS][UNKNOWNS + 1], articulated_sweep *s, const laconic_articulated_model *m,
+static void add_springs(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], articulated_sweep *s, const laconic_articulated_model *m,
                         const articulated_drive *drive, real h) {
     real rate[LACONIC_MAX_VELOCITIES][LACONIC_MAX_BODIES];
     articulated_drive still = *drive;
@@ -175,7 +175,7 @@ static void add_springs(real a[UNKNOWNS][UNKNOWNS + 1], articulated_sweep *s, co
 static laconic_status velocity_step(real *d, articulated_sweep *s, const laconic_articulated_model *m,
                                     const laconic_articulated_factors *factors, const articulated_drive *drive,
                                     const moebius_point *p, real h, laconic_refusal *why) {
-    real a[UNKNOWNS][UNKNOWNS + 1], target[LACONIC_MAX_LEFT_ROWS], x[UNKNOWNS];
+    real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], target[LACONIC_MAX_LEFT_ROWS], x[MOEBIUS_UNKNOWNS];
     int32_t kept[LACONIC_MAX_VELOCITIES], rows = 0;
     sweep_loads(s, m, drive);
     if (drive->rotates) laconic_articulated_add_world(s, m, drive, p->facing);
@@ -204,7 +204,7 @@ static laconic_status velocity_step(real *d, articulated_sweep *s, const laconic
         for (int32_t i = 0; i < k; i++) a[i][l] -= R(0.5) * h * column[i];
     }
     add_springs(a, s, m, drive, h);
-    if (!eliminate(a, x, n)) return refuse(why, LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0, h, R(0.5) * h);
+    if (!eliminate_unknowns(a, x, n)) return refuse(why, LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0, h, R(0.5) * h);
     for (int32_t i = 0; i < k; i++) d[i] = x[i];
     return LACONIC_OK;
 }
@@ -249,7 +249,7 @@ static laconic_status base_step_of(moebius_point *p, moebius_means *means, const
     articulated_moment moment;
     const real half = R(0.5) * share;
     laconic_articulated_begin_moment(&moment, course, m);
-    const articulated_drive *drive = drive_at(&moment, course, m, from + half);
+    const articulated_drive *drive = commands_of(&moment, course, m, from + half);
     real d[LACONIC_MAX_VELOCITIES], before[LACONIC_MAX_VELOCITIES];
     laconic_status status = commanded_ready(&s, m, p, drive, why);
     if (status != LACONIC_OK) return status;
@@ -314,7 +314,7 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
     if (status != LACONIC_OK) return status;
     combine_points(&by, m, state, &once, &twice, means, h * m->fastest_swing_per_s > R(1) ? R(0) : R(1) / R(3));
     laconic_articulated_begin_moment(&moment, course, m);
-    const articulated_drive *end = drive_at(&moment, course, m, from + share);
+    const articulated_drive *end = commands_of(&moment, course, m, from + share);
     laconic_articulated_turn_coordinated(&by, m, state, end);
     status = laconic_articulated_accept(state, m, &by, h);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_STEP, 0, h, R(0));
