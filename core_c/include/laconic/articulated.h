@@ -153,7 +153,7 @@ typedef struct laconic_link {
     bool is_leaf;                   /* no other body hangs on it                                        */
     bool is_plain_follower;         /* a following leaf without rows left over                          */
     laconic_form followed_inertia, followed_drag; /* of a following hinge: on V alone, ω put in          */
-    laconic_vector axle_per_lever;  /* of a following hinge: n/ℓ, and 1/ℓ as z                          */
+    laconic_vector axle_per_lever;  /* of a following hinge: n/ℓ; z is 0                                */
     laconic_real damping_Nms, stiffness_Nm, rest_rad, gain_Nm_per_V;
 } laconic_link;
 
@@ -196,7 +196,8 @@ typedef struct laconic_articulated_model {
     laconic_left_row row[LACONIC_MAX_LEFT_ROWS];
     laconic_articulated_wheel wheel[LACONIC_MAX_WHEELS];
     laconic_real length_m;        /* size of the vehicle, for comparisons of lengths                         */
-    laconic_real fastest_decay_per_s; /* of motors, hinges and springs together, the largest of several postures */
+    laconic_real fastest_decay_per_s; /* of motors and hinges, the largest of several postures               */
+    laconic_real fastest_swing_per_s; /* of springs, likewise                                               */
     laconic_real friction_coefficient;
     laconic_vector slope_acceleration; /* downhill, world axes; 0 on level ground */
 } laconic_articulated_model;
@@ -208,6 +209,7 @@ typedef struct laconic_articulated_model {
  *   OVERFLOW               numbers of a body or wheel
  *   COORDINATED_ON_BODY    a coordinated hinge whose parent is not the carriage
  *   COORDINATED_WHEEL      a fixed wheel of a coordinated body does not roll along ξ with its axle line through the hinge
+ *   COORDINATED_TOO_FEW    the carriage's own wheels and coordinated ones together leave more than one motion
  *   MASSLESS_HINGE         an own hinge turns without inertia
  *   STEERED_TOO_OFTEN      fixed wheels under free or motor hinges hold the carriage at nearly every angle: three
  *                          motor-driven modules, or two behind which the carriage has an axle
@@ -280,7 +282,8 @@ typedef enum laconic_articulated_method {
     LACONIC_ARTICULATED_AUTO = 0,     /* every vehicle and step; divides a step where motion is fast           */
     LACONIC_ARTICULATED_RK4 = 1,      /* order 4; h v/a < 2.78 (a: trail of a caster) and h·r < 2.78            */
     LACONIC_ARTICULATED_CIRCLE = 2,   /* order 4; following angles by exact maps of the circle; h·r < 2.78      */
-    LACONIC_ARTICULATED_MOEBIUS_4 = 3 /* order 4; any damping                                                  */
+    LACONIC_ARTICULATED_MOEBIUS_4 = 3 /* order 4; any damping. Order 3 with rows left over, and 2, but stable, where
+                                         a spring swings faster than the step (h·rate above 1)                  */
 } laconic_articulated_method;
 
 #define LACONIC_ARTICULATED_METHOD_COUNT 4

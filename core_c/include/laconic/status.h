@@ -82,6 +82,9 @@
     X(COORDINATED_WHEEL, "coordinated wheel", \
       "a fixed wheel on a coordinated hinge must roll along its body's first axis, with the hinge on its axle line; " \
       "give axle_rad = pi/2 or -pi/2 and x_m = 0") \
+    X(COORDINATED_TOO_FEW, "coordinated too few", \
+      "# axle lines hold the carriage to the twist, but @ are needed: those of its own fixed wheels and of coordinated " \
+      "ones; use a prescribed or motor hinge") \
     X(MASSLESS_HINGE, "massless hinge", /* an own hinge without inertia; limit: none */ \
       "this hinge turns without inertia, and no wheel behind it sets its rate; give the body a yaw inertia, place the " \
       "wheel behind the hinge (a trail), or prescribe the rate") \

@@ -115,7 +115,7 @@ static void follow_row(laconic_link *link, body_rows *rows, int32_t k, real leng
     const vector row = rows->row[k];
     const real inverse = R(1) / (row.z * length);
     link->motion = LACONIC_MOTION_FOLLOWING;
-    link->axle_per_lever = vector_of(row.x * inverse, row.y * inverse, inverse);
+    link->axle_per_lever = vector_of(row.x * inverse, row.y * inverse, R(0));
     for (int32_t j = 0; j < rows->count; j++) {
         if (j == k) continue;
         vector rest = minus(rows->row[j], scaled(rows->row[j].z / row.z, row));

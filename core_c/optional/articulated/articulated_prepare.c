@@ -110,7 +110,7 @@ static real form_size(const laconic_form *f) {
 
 /* No constant, and no product of two, is beyond the range. */
 static bool all_usable(const laconic_articulated_model *m) {
-    real sum = form_size(&m->inertia) + form_size(&m->drag) + m->length_m + m->fastest_decay_per_s;
+    real sum = form_size(&m->inertia) + form_size(&m->drag) + m->length_m + m->fastest_decay_per_s + m->fastest_swing_per_s;
     for (int k = 0; k < 3; k++) sum += size(m->column[k]) + m->decay_per_s[k];
     for (int32_t b = 0; b < m->body_count; b++) {
         const laconic_link *link = &m->link[b];
@@ -120,6 +120,19 @@ static bool all_usable(const laconic_articulated_model *m) {
     for (int32_t i = 0; i < m->wheel_count; i++)
         sum += size(m->wheel[i].roll) + magnitude(m->wheel[i].inverse_arm_per_m) + magnitude(m->wheel[i].gain_Nm_per_V);
     return fits_squared(sum);
+}
+
+/* A twist commands one motion: wheels must hold the carriage to it. Axle lines that a posture happens to join count. */
+static laconic_status check_held(const laconic_articulated_model *m, laconic_refusal *why) {
+    int32_t lines = 3 - m->column_count;
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        bool fixed = false;
+        for (int32_t i = 0; i < m->wheel_count; i++)
+            fixed = fixed || (m->wheel[i].body == b && square(m->wheel[i].axle) > R(0));
+        if (fixed && m->link[b - 1].motion == LACONIC_MOTION_COORDINATED) lines++;
+    }
+    if (!m->coordinated || lines >= 2) return LACONIC_OK;
+    return refuse(why, LACONIC_COORDINATED_TOO_FEW, (laconic_field)LACONIC_FIELD_OF_BODY_COUNT, 0, (real)lines, R(2));
 }
 
 static void count_velocities(laconic_articulated_model *m) {
@@ -140,6 +153,7 @@ laconic_status laconic_articulated_prepare(laconic_articulated_model *model,
     laconic_articulated_wheels(&m, vehicle);
     add_carriage_wheels(&m);
     status = laconic_articulated_links(&m, vehicle, why);
+    if (status == LACONIC_OK) status = check_held(&m, why);
     if (status != LACONIC_OK) return status;
     count_velocities(&m);
     if (!all_usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));

@@ -127,7 +127,7 @@ typedef struct holding_rows {
     bool brake[MAX_HOLDING];
 } holding_rows;
 
-static void hold(holding_rows *h, const laconic_articulated_model *m, vector row, int32_t wheel, bool brake) {
+static void add_holding(holding_rows *h, const laconic_articulated_model *m, vector row, int32_t wheel, bool brake) {
     row.z /= m->length_m;
     store(h->row[h->count], row);
     h->wheel[h->count] = wheel;
@@ -137,13 +137,13 @@ static void hold(holding_rows *h, const laconic_articulated_model *m, vector row
 static void hold_by_body(holding_rows *h, const laconic_articulated_model *m, int32_t b) {
     for (int32_t i = 0; i < m->wheel_count; i++) {
         if (m->wheel[i].body != b) continue;
-        if (square(m->wheel[i].axle) > R(0)) hold(h, m, m->wheel[i].axle, i, false);
-        if (m->wheel[i].locked) hold(h, m, m->wheel[i].pull, i, true);
+        if (square(m->wheel[i].axle) > R(0)) add_holding(h, m, m->wheel[i].axle, i, false);
+        if (m->wheel[i].locked) add_holding(h, m, m->wheel[i].pull, i, true);
     }
 }
 
 /* Shares a wrench among rows by least norm; returns what they do not deliver. */
-static vector share(laconic_articulated_reactions *out, const laconic_articulated_model *m, const holding_rows *h,
+static vector share_among(laconic_articulated_reactions *out, const laconic_articulated_model *m, const holding_rows *h,
                     vector wrench) {
     real solver[MAX_HOLDING][3];
     vector rest = vector_of(wrench.x, wrench.y, wrench.z / m->length_m);
@@ -183,7 +183,7 @@ static void balance_body(laconic_articulated_reactions *out, reaction_moment *r,
     const vector delivered = wheels_deliver(r, m, b, torque);
     if (link->motion != LACONIC_MOTION_COORDINATED) {
         hold_by_body(&rows, m, b);
-        (void)share(out, m, &rows, delivered);
+        (void)share_among(out, m, &rows, delivered);
     }
     const vector left = minus(r->needed[b], delivered);
     if (link->motion >= LACONIC_MOTION_PRESCRIBED) torque = left.z;
@@ -208,9 +208,9 @@ static void balance_carriage(laconic_articulated_reactions *out, const reaction_
         const direction d = r->sweep.toward[b - 1];
         vector row = turned(d, m->wheel[i].axle.x, m->wheel[i].axle.y);
         row.z = m->link[b - 1].hinge.x * row.y - m->link[b - 1].hinge.y * row.x;
-        hold(&rows, m, row, i, false);
+        add_holding(&rows, m, row, i, false);
     }
-    const vector needed = r->needed[0], rest = share(out, m, &rows, needed);
+    const vector needed = r->needed[0], rest = share_among(out, m, &rows, needed);
     out->balance = magnitude(rest.x) + magnitude(rest.y) + magnitude(rest.z) / m->length_m;
 }
 
@@ -243,7 +243,7 @@ static void judge(laconic_articulated_reactions *out, const reaction_moment *r, 
         const real margin = m->friction_coefficient * normal_N[i] - reaction;
         if (i == 0 || !(margin >= out->no_slip_margin_N)) out->no_slip_margin_N = margin;
     }
-    out->balance = scale > R(0) ? out->balance / scale : R(0);
+    out->balance /= scale + LACONIC_EPSILON * R(LACONIC_GRAVITY_M_PER_S2) * m->mass_kg; /* at rest: of the weight */
 }
 
 laconic_status laconic_articulated_reactions_of(laconic_articulated_reactions *reactions,

@@ -121,8 +121,8 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     articulated_sweep s, start;
     articulated_moment moment;
     const real h = share * course->step_s;
-    const direction heading = course->start.rotates || course->end.rotates ? direction_of_heading(&state->heading)
-                                                                           : direction_with(R(1), R(0));
+    const bool rotates = course->start.rotates || (!course->constant && course->end.rotates);
+    const direction heading = rotates ? direction_of_heading(&state->heading) : direction_with(R(1), R(0));
     direction facing = heading;
     real eta0[LACONIC_MAX_VELOCITIES], eta[LACONIC_MAX_VELOCITIES], rate[LACONIC_MAX_VELOCITIES];
     real correction[LACONIC_MAX_VELOCITIES];
@@ -137,7 +137,7 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     }
     for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i];
     for (int g = 0; g < 4; g++) {
-        const articulated_drive *drive = drive_at(&moment, course, m, from + share * stage_at[g]);
+        const articulated_drive *drive = commands_of(&moment, course, m, from + share * stage_at[g]);
         const real ahead = h * (g < 3 ? stage_at[g + 1] : R(0));
         laconic_status status = accelerations(rate, g == 0 ? correction : NULL, &s, m, eta, drive, facing, why);
         if (status == LACONIC_OK && g == 0) status = check_rates(&s, m, h, circle, largest, why);

@@ -65,7 +65,7 @@ laconic_status laconic_articulated_input_check(const laconic_articulated_model *
 }
 
 /* Finite, or names the number. */
-static laconic_status check_drive(const articulated_drive *drive, const laconic_articulated_model *m,
+static laconic_status check_drive_numbers(const articulated_drive *drive, const laconic_articulated_model *m,
                                   const laconic_articulated_input *input, laconic_refusal *why) {
     if (laconic_articulated_drive_is_finite(drive, m)) return LACONIC_OK;
     const laconic_status status = laconic_articulated_input_check(m, input, why);
@@ -105,7 +105,7 @@ laconic_status laconic_articulated_jump(const laconic_articulated_model *model, 
     laconic_articulated_state after = *state;
     articulated_drive drive;
     laconic_articulated_drive_of(&drive, model, input);
-    laconic_status status = check_drive(&drive, model, input, why);
+    laconic_status status = check_drive_numbers(&drive, model, input, why);
     if (status == LACONIC_OK) status = follow_jump(&after, model, &drive, why);
     if (status == LACONIC_OK) *state = after;
     return status;
@@ -121,7 +121,7 @@ static laconic_status take_course(articulated_course *course, const laconic_arti
     course->step_s = integrator->step_s;
     course->rate_per_step = integrator->rate_per_step;
     laconic_articulated_drive_of(&course->start, m, start);
-    laconic_status status = check_drive(&course->start, m, start, why);
+    laconic_status status = check_drive_numbers(&course->start, m, start, why);
     if (status != LACONIC_OK) return status;
     course->constant = start == end;
     for (int32_t b = 0; b < m->body_count; b++)
@@ -129,7 +129,7 @@ static laconic_status take_course(articulated_course *course, const laconic_arti
     if (course->start.turns) course->constant = false;
     if (course->constant) return LACONIC_OK;
     laconic_articulated_drive_of(&course->end, m, end);
-    status = check_drive(&course->end, m, end, why);
+    status = check_drive_numbers(&course->end, m, end, why);
     if (status != LACONIC_OK) return status;
     laconic_articulated_course_of(course, m);
     if (!m->coordinated) return LACONIC_OK;
