@@ -59,7 +59,8 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     from laconic.tools.report.many.race import stay_on_one_core
 
     stay_on_one_core()
-    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "filter": _filter, "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
+    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "filter": _filter,
+                   "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
         return

@@ -102,9 +102,9 @@ digits; `coarse`: some digits are, as the step is long; `number`: finite, but to
 ROUNDING = f"""
 What single precision can and cannot do: proved bounds of what rounding does in one step of {EXPLICIT} to ν, heading
 and place, for all states within what the scene's run shows of each axis, beside the same step in exact arithmetic with
-the same prepared constants. Per hour: what heading and place are off by for their own rounding if every step rounded as badly as
-it can, all one way; an error of ν acts on them besides, as any does. As the sums of a state carry what they could not
-take up, the bounds do not grow with the way travelled or the turns made.
+the same prepared constants. Per hour: what heading and place are off by for their own rounding if every step rounded as
+badly as it can, all one way; an error of ν acts on them besides, as any does. As the sums of a state carry what they
+could not take up, the bounds do not grow with the way travelled or the turns made.
 """
 
 
