@@ -1,1 +1,1 @@
-"""How far the project is checked beyond its tests; `build/venv/bin/python host_tests/assurance` lists the parts."""
+"""How far the project is checked beyond its tests; run.py lists the parts."""

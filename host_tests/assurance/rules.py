@@ -1,10 +1,11 @@
 """The rules of CONTRIBUTING.md that a script can hold: prints each violation and ends with status 1 if there is one.
 
-    python host_tests/assurance/rules.py
+    rules, or this file by itself
 """
 
 from __future__ import annotations
 
+import argparse
 import ast
 import re
 import subprocess
@@ -12,8 +13,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import sizes  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from assurance import sizes  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 MOST_FILES = 1650
@@ -117,6 +118,15 @@ def job_of(path: str, text: str) -> bool:
         start = re.match(r"/\*(.*?)\*/" if path.endswith((".c", ".h")) else r"#(.*)", text, re.DOTALL)
         comment = start[1] if start else None
     return comment is not None and len(comment.split()) > 2
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """None."""
+
+
+def run(_: argparse.Namespace) -> bool:
+    """Whether none is violated."""
+    return main() == 0
 
 
 if __name__ == "__main__":

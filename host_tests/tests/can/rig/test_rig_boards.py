@@ -5,8 +5,8 @@ from __future__ import annotations
 import zlib
 
 import pytest
-from laconic.soak import boards as boards_soak
 
+from assurance.boards import busy_cores, start
 from laconic.base.paths import scene_names
 from laconic.can.rig.boards import emulated_node, why_no_emulation
 from laconic.can.rig.choices import BOARDS
@@ -64,8 +64,8 @@ def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: st
 @pytest.mark.parametrize("busy", [0, 2], ids=["idle", "busy"])
 @pytest.mark.parametrize("name", list(BOARDS))
 def test_a_board_that_has_just_been_started_loads_a_vehicle_at_once(name: str, busy: int) -> None:
-    with boards_soak.busy_cores(busy):
-        assert [boards_soak.start(name, "kuka_youbot") for _ in range(2)] == [None, None]
+    with busy_cores(busy):
+        assert [start(name, "kuka_youbot") for _ in range(2)] == [None, None]
 
 
 @pytest.mark.parametrize("name", FULL)

@@ -7,7 +7,6 @@ import subprocess
 import sys
 
 import pytest
-from laconic.cli.commands.soak import kinds
 
 from laconic.base.paths import build_dir, built, scene_path
 from laconic.cli.main import commands, run
@@ -46,12 +45,6 @@ def test_help_lists_the_commands(capsys):
     text = capsys.readouterr().out
     assert all(f"  {name} " in text for name in NAMES)
     assert "..." not in text.partition("Commands:")[2]  # no summary is cut off
-
-
-def test_soak_explains_every_run_it_knows(capsys):
-    assert run(["soak", "--help"]) == 0
-    text = capsys.readouterr().out
-    assert all(f"\n  {name} " in text for name in kinds())
 
 
 def test_version(capsys):

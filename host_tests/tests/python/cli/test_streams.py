@@ -26,15 +26,15 @@ def main_with(command: str, before: str = "") -> str:
 
 
 RICH = """
-import laconic.cli.commands.soak as soak
+import laconic.cli.commands.benchmark as benchmark
 from rich.console import Console
-soak.command.callback = lambda **_: [Console().print(line) for line in range(100_000)] and 0
+benchmark.command.callback = lambda **_: [Console().print(line) for line in range(100_000)] and 0
 """
 """A command with much output by rich, which has ways of its own with pipes."""
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("command, before", [("simulate s1", ""), ("simulate s1 --out -", ""), ("soak fuzz", RICH)])
+@pytest.mark.parametrize("command, before", [("simulate s1", ""), ("simulate s1 --out -", ""), ("benchmark step", RICH)])
 def test_a_full_stdout_is_one_line(command, before):
     with Path("/dev/full").open("w") as full:
         done = started(main_with(command, before), stdout=full)
@@ -42,7 +42,7 @@ def test_a_full_stdout_is_one_line(command, before):
     assert done.returncode == 2
 
 
-@pytest.mark.parametrize("command, before", [("simulate s1 --out -", ""), ("soak fuzz", RICH)])
+@pytest.mark.parametrize("command, before", [("simulate s1 --out -", ""), ("benchmark step", RICH)])
 def test_a_reader_that_goes_is_no_verdict(command, before):
     reader, writer = os.pipe()
     os.close(reader)
@@ -72,7 +72,7 @@ def test_a_signal_is_one_line_and_leaves_no_half_file(name, status, words, tmp_p
 
 
 def test_letters_that_stdout_does_not_know_are_no_error():
-    done = started(main_with("soak fuzz", RICH.replace("range(100_000)", "'ν'")), stdout=subprocess.PIPE,
+    done = started(main_with("benchmark step", RICH.replace("range(100_000)", "'ν'")), stdout=subprocess.PIPE,
                    env={**os.environ, "PYTHONIOENCODING": "ascii"})
     assert (done.returncode, done.stdout, done.stderr) == (0, "\\u03bd\n", "")
 
@@ -121,7 +121,7 @@ def test_ctrl_c_while_modules_are_read_is_one_line(tmp_path, module):
 
 
 SWALLOWED = """
-import laconic.cli.commands.soak as soak, time
+import laconic.cli.commands.benchmark as benchmark, time
 class Final:
     def __del__(self):
         os.kill(os.getpid(), signal.SIGTERM)
@@ -129,21 +129,21 @@ class Final:
 def work(**_):
     Final()
     time.sleep(60)
-soak.command.callback = work
+benchmark.command.callback = work
 """
 
 
 def test_a_stop_that_falls_where_python_ignores_exceptions_is_not_lost():
-    done = started(main_with("soak fuzz", SWALLOWED), stdout=subprocess.DEVNULL, timeout=30)
+    done = started(main_with("benchmark step", SWALLOWED), stdout=subprocess.DEVNULL, timeout=30)
     assert done.stderr == "laconic: stopped by SIGTERM\n"
     assert done.returncode == 128 + signal.SIGTERM
 
 
 AGAIN = """
-import laconic.cli.commands.soak as soak, laconic.cli.main as command_line
+import laconic.cli.commands.benchmark as benchmark, laconic.cli.main as command_line
 def work(**_):
     os.kill(os.getpid(), signal.SIGINT)
-soak.command.callback = work
+benchmark.command.callback = work
 told = command_line.{0}
 def {0}(*given):
     found = told(*given)
@@ -155,17 +155,17 @@ command_line.{0} = {0}
 
 @pytest.mark.parametrize("while_it", ["fail", "let_signals_end"])
 def test_a_second_ctrl_c_while_the_first_ends_the_command_is_no_traceback(while_it):
-    done = started(main_with("soak fuzz", AGAIN.format(while_it)), stdout=subprocess.DEVNULL, timeout=30)
+    done = started(main_with("benchmark step", AGAIN.format(while_it)), stdout=subprocess.DEVNULL, timeout=30)
     assert done.stderr == "laconic: stopped by the user\n"
     assert done.returncode == 130
 
 
 AT_EXIT = """
-import laconic.cli.commands.soak as soak, threading
+import laconic.cli.commands.benchmark as benchmark, threading
 def work(**_):
     threading.Thread(target=lambda: [threading.Event().wait(0.2), os.kill(os.getpid(), signal.SIGINT)]).start()
     os.kill(os.getpid(), signal.SIGINT)
-soak.command.callback = work
+benchmark.command.callback = work
 class Last:
     def __del__(self, kill=os.kill, pid=os.getpid(), number=signal.SIGINT):
         kill(pid, number)
@@ -175,12 +175,12 @@ sys.last_of_all = Last()
 
 @pytest.mark.parametrize("left_out", ["sys.last_of_all = Last()", "threading.Event().wait(0.2), "])
 def test_a_second_ctrl_c_while_python_ends_leaves_the_status(left_out):
-    done = started(main_with("soak fuzz", AT_EXIT.replace(left_out, "")), stdout=subprocess.DEVNULL, timeout=30)
+    done = started(main_with("benchmark step", AT_EXIT.replace(left_out, "")), stdout=subprocess.DEVNULL, timeout=30)
     assert (done.returncode, done.stderr) == (130, "laconic: stopped by the user\n")
 
 
 MANY = """
-import laconic.cli.commands.soak as soak
+import laconic.cli.commands.benchmark as benchmark
 def work(**_):
     try:
         os.kill(os.getpid(), signal.SIGINT)
@@ -189,10 +189,10 @@ def work(**_):
             os.kill(os.getpid(), signal.SIGINT)
         finally:
             os.kill(os.getpid(), signal.SIGINT)
-soak.command.callback = work
+benchmark.command.callback = work
 """
 
 
 def test_a_third_ctrl_c_ends_whatever_still_cleans_up():
-    done = started(main_with("soak fuzz", MANY), stdout=subprocess.DEVNULL, timeout=30)
+    done = started(main_with("benchmark step", MANY), stdout=subprocess.DEVNULL, timeout=30)
     assert (done.returncode, done.stderr) == (130, "")

@@ -6,8 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from laconic.targets import board_lines
 
+from assurance.targets import board_lines
 from laconic.base.paths import SOURCE_DIR, built
 from laconic.cli.main import run
 from laconic.tools.report.binary_tools import run_tool
@@ -15,7 +15,7 @@ from laconic.tools.report.workshop import BOARDS, M4F
 
 CORE = SOURCE_DIR / "core_c"
 M3 = next(board for board in BOARDS if board.name == "Cortex-M3")
-STEPS = 16  # of each trajectory; `laconic soak targets` takes all
+STEPS = 16  # of each trajectory; host_tests/assurance/targets.py takes all
 SMALLEST = "a - b with a = 3ff0000000000000, b = 3de0000000000001 gives 3fefffffffefffff, not 3feffffffff00000"
 
 needs_boards = pytest.mark.skipif(not M4F.present, reason="no arm-none-eabi-gcc or qemu-system-arm")

@@ -12,8 +12,8 @@ from dataclasses import astuple
 
 import pytest
 from flint import arb
-from laconic.soak.enclosures import random_scene
 
+from assurance.long.enclosures import random_scene
 from laconic.base.paths import built
 from laconic.core import load
 from laconic.core.estimate import NAMES

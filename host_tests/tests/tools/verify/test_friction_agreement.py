@@ -1,12 +1,9 @@
-"""The core's friction solver agrees with the oracle; `laconic soak friction` does the same for as long as wanted."""
+"""The core's friction solver agrees with the oracle; host_tests/assurance/long/friction.py does the same for longer."""
 
 from __future__ import annotations
 
-import laconic.soak.friction
 import numpy as np
 import pytest
-from laconic.soak import StoppedEarly
-from laconic.soak.friction import MOST_COLD_REFUSED, MOST_WARM_REFUSED
 
 from references.friction.agreement import LIMIT, Count, compare, energy_difference
 from references.friction.core_solver import CoreSolution, solve_in_core
@@ -18,6 +15,7 @@ from references.friction.residual import size_of
 from references.friction.vehicles import random_problem, random_vehicle
 
 COLD, HARD, VEHICLES, STEPS = 120, 12, 30, 40
+MOST_COLD_REFUSED, MOST_WARM_REFUSED = 1e-2, 1e-3
 
 
 def problems(count):
@@ -114,26 +112,3 @@ def test_a_case_read_from_its_file_is_the_same_to_the_last_bit(tmp_path):
     problem.save(tmp_path / "case.json", what="test")
     again = StepProblem.load(tmp_path / "case.json")
     assert all(np.array_equal(getattr(problem, name), value) for name, value in vars(again).items())
-
-
-def test_the_soak_judges_and_writes_its_cases(monkeypatch, tmp_path):
-    monkeypatch.setattr(laconic.soak.friction, "results_dir", lambda name: tmp_path / name)
-    moved = []
-    result = laconic.soak.friction.soak(0.3 / 60, 1, moved.append)
-    assert sum(moved) == pytest.approx(0.3, abs=1.0)
-    assert {"cold: steps", "hard: refused", "warm: worst"} <= set(result)
-
-
-def test_a_soak_that_is_stopped_tells_what_it_found_until_then(monkeypatch, tmp_path):
-    monkeypatch.setattr(laconic.soak.friction, "results_dir", lambda name: tmp_path / name)
-    done = []
-
-    def advance(seconds):
-        done.append(seconds)
-        if len(done) == 6:
-            raise KeyboardInterrupt
-
-    with pytest.raises(StoppedEarly) as stopped:
-        laconic.soak.friction.soak(10.0, 1, advance)
-    assert isinstance(stopped.value.__cause__, KeyboardInterrupt)
-    assert {"passed", "cold: steps", "hard: refused", "warm: worst"} <= set(stopped.value.result)

@@ -1,10 +1,8 @@
-"""Vehicles on ground with friction that nothing drives; `laconic soak friction-energy` does the same for longer."""
+"""Vehicles on ground with friction that nothing drives; host_tests/assurance/long/friction.py does the same for longer."""
 
 from __future__ import annotations
 
-import laconic.soak.friction_energy
 import pytest
-from laconic.soak import StoppedEarly
 
 from laconic.errors import Refused
 from references.friction import coasting
@@ -65,19 +63,3 @@ def test_a_step_that_is_not_solved_is_counted_and_any_other_refusal_is_wrong(sta
     count = Coasted()
     coast([1, 2], count)
     assert (count.refused, len(count.wrong)) == (refused, wrong)
-
-
-def test_the_soak_takes_turns_and_tells_what_it_found():
-    moved = []
-    result = laconic.soak.friction_energy.soak(0.3 / 60, 1, moved.append)
-    assert sum(moved) == pytest.approx(0.3, abs=1.0)
-    assert result["passed"] and "steps of" in result["coasting, single"] and "steps of" in result["at rest, double"]
-
-
-def test_a_soak_of_energies_that_is_stopped_tells_what_it_found_until_then():
-    def advance(seconds):
-        raise KeyboardInterrupt
-
-    with pytest.raises(StoppedEarly) as stopped:
-        laconic.soak.friction_energy.soak(10.0, 1, advance)
-    assert stopped.value.result["passed"]

@@ -1,4 +1,4 @@
-/* soft_double.c beside this processor's addition: `soak_soft_double SEED PAIRS` prints the first pair that differs and
+/* soft_double.c beside this processor's addition: `soft_double SEED PAIRS` prints the first pair that differs and
  * ends with 1, else the number of pairs. Half of the pairs are any bits, the others those that rounding is sensitive
  * to: exponents 0 to 70 apart, fractions of few ones, of long rows of ones, or near a power of two. */
 #include "soft_double.h"

@@ -1,4 +1,4 @@
-"""The one entry: `build/venv/bin/python host_tests/assurance NAME [options]` runs a part and prints what it found.
+"""The one entry: `build/venv/bin/python host_tests/assurance/run.py NAME [options]` runs a part and prints its result.
 
 The exit status is 0 where nothing was found that must not be, 1 where something was, 2 where the part cannot run."""
 
@@ -21,6 +21,7 @@ PARTS = {
     "mutate": "small faults in the C sources, which the C tests should notice",
     "population": "made-up vehicles beside their true motion",
     "proof": "Frama-C: no undefined behaviour for any input",
+    "rules": "what CONTRIBUTING.md asks of every file",
     "sizes": "lines and files of product, tests and apparatus",
     "targets": "the same bits from other compilers, processors and boards",
     "tidy": "clang-tidy",
