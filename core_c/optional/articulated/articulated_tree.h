@@ -26,35 +26,36 @@
 /* ------------------------------------------------------------ what is commanded, at one moment -- */
 
 typedef struct articulated_drive {
-    vector force[BODIES];              /* of motors, and on body 0 of the input's wrench; own axes */
-    real torque[LACONIC_MAX_BODIES];   /* of free and motor hinges without damping and spring      */
-    real rate[LACONIC_MAX_BODIES];     /* r of prescribed hinges                                   */
+    vector force[BODIES];            /* of motors, and on body 0 of the input's wrench; own axes */
+    real torque[LACONIC_MAX_BODIES]; /* of free and motor hinges without damping and spring      */
+    real rate[LACONIC_MAX_BODIES];   /* r of prescribed hinges                                   */
     real acceleration[LACONIC_MAX_BODIES];
-    vector twist[3];                   /* T, T', T'' of S_0                                        */
-    bool turns;                        /* T' or T'' is not 0                                       */
+    vector twist[3]; /* T, T', T'' of S_0                                        */
+    bool turns;      /* T' or T'' is not 0                                       */
     real world_force[2], world_force_point[2];
-    bool rotates;                      /* a force fixed in the world acts                          */
+    bool rotates; /* a force fixed in the world acts                          */
 } articulated_drive;
 
 /* ------------------------------------------------------------------------ the posture and its sweep -- */
 
 typedef struct articulated_sweep {
-    vector twist[BODIES];    /* X_b          */
-    vector bias[BODIES];     /* γ_b          */
-    real rate[LACONIC_MAX_BODIES];           /* ψ_b' */
-    direction toward[LACONIC_MAX_BODIES];    /* (cos ψ, sin ψ) */
-    real angle_rad[LACONIC_MAX_BODIES];      /* ψ less its rest, only of hinges with a spring */
-    vector force[BODIES];        /* what acts at the body and beyond, less I_b γ_b */
-    laconic_form inertia[BODIES]; /* of the body and what follows it                */
-    vector own[LACONIC_MAX_BODIES];               /* momentum that 1 rad/s of own hinge k has, seen at one body */
-    vector row[LACONIC_MAX_LEFT_ROWS];            /* left row, seen at one body                                 */
+    vector twist[BODIES];                 /* X_b          */
+    vector bias[BODIES];                  /* γ_b          */
+    real rate[LACONIC_MAX_BODIES];        /* ψ_b' */
+    direction toward[LACONIC_MAX_BODIES]; /* (cos ψ, sin ψ) */
+    real angle_rad[LACONIC_MAX_BODIES];   /* ψ less its rest, only of hinges with a spring */
+    vector force[BODIES];                 /* what acts at the body and beyond, less I_b γ_b */
+    laconic_form inertia[BODIES];         /* of the body and what follows it                */
+    vector own[LACONIC_MAX_BODIES];       /* momentum that 1 rad/s of own hinge k has, seen at one body */
+    vector row[LACONIC_MAX_LEFT_ROWS];    /* left row, seen at one body                                 */
     real row_of_own[LACONIC_MAX_LEFT_ROWS][LACONIC_MAX_BODIES];
     real row_bias[LACONIC_MAX_LEFT_ROWS], row_value[LACONIC_MAX_LEFT_ROWS];
-    vector along[1];                              /* U = T/|T| in the metric of body 0, where it is commanded   */
+    vector along[1]; /* U = T/|T| in the metric of body 0, where it is commanded   */
     vector along_rate;
-    real along_share;          /* T·I₀T'/|T|²                                                                          */
+    real along_share; /* T·I₀T'/|T|²                                                                          */
     real module_mass, module_push; /* of coordinated leaves, seen along U; 0 where they are summed at the root       */
-    real inverse_size[BODIES]; /* 1/|w| of coordinated hinges, 1/|T| of body 0, of the posture before; 0: unknown       */
+    real inverse_size
+        [BODIES]; /* 1/|w| of coordinated hinges, 1/|T| of body 0, of the posture before; 0: unknown       */
     real mass[LACONIC_MAX_VELOCITIES][LACONIC_MAX_VELOCITIES]; /* lower half                                     */
     real push[LACONIC_MAX_VELOCITIES];                         /* right side                                     */
     real left[LACONIC_MAX_LEFT_ROWS][LACONIC_MAX_VELOCITIES];  /* C                                              */
@@ -121,8 +122,8 @@ static inline bool has_direction(real w_square, vector twist) {
 }
 
 typedef struct coordinated_motion {
-    direction w;            /* not of length 1 */
-    real square_size, size; /* |w|², |w|       */
+    direction w;                     /* not of length 1 */
+    real square_size, size;          /* |w|², |w|       */
     real rate, acceleration, growth; /* ψ', ψ'', |w|'/|w| */
 } coordinated_motion;
 
@@ -344,8 +345,8 @@ INLINE void pull_inertia(laconic_form *parent, const laconic_link *link, directi
 }
 
 /* Own hinge b: its row of the equations, and its momentum, which travels on. */
-static inline void meet_own(articulated_sweep *s, const laconic_articulated_model *m, int32_t b,
-                            const laconic_form *a, real torque) {
+static inline void meet_own(articulated_sweep *s, const laconic_articulated_model *m, int32_t b, const laconic_form *a,
+                            real torque) {
     const laconic_link *link = &m->link[b - 1];
     const int32_t k = link->column, i = m->carriage_dof + k;
     for (int32_t j = 0; j < m->own_count; j++) {
@@ -430,10 +431,8 @@ INLINE void push_root(articulated_sweep *s, const laconic_articulated_model *m, 
         return;
     }
     s->push[0] = dot(m->column[0], force) - (decays ? m->decay_per_s[0] * eta[0] : R(0));
-    if (m->carriage_dof > 1)
-        s->push[1] = dot(m->column[1], force) - (decays ? m->decay_per_s[1] * eta[1] : R(0));
-    if (m->carriage_dof > 2)
-        s->push[2] = dot(m->column[2], force) - (decays ? m->decay_per_s[2] * eta[2] : R(0));
+    if (m->carriage_dof > 1) s->push[1] = dot(m->column[1], force) - (decays ? m->decay_per_s[1] * eta[1] : R(0));
+    if (m->carriage_dof > 2) s->push[2] = dot(m->column[2], force) - (decays ? m->decay_per_s[2] * eta[2] : R(0));
 }
 
 static inline real form_product(const laconic_form *a, laconic_form b) {
@@ -699,8 +698,8 @@ INLINE int32_t sweep_all(articulated_sweep *s, const laconic_articulated_model *
 /* η' and all twists of a posture whose directions are set. `correction` (NULL: not wanted) is the change of η that
  * restores the rows left over. */
 INLINE laconic_status accelerations(real *eta_rate, real *correction, articulated_sweep *s,
-                                    const laconic_articulated_model *m, const real *eta,
-                                    const articulated_drive *drive, direction heading, laconic_refusal *why) {
+                                    const laconic_articulated_model *m, const real *eta, const articulated_drive *drive,
+                                    direction heading, laconic_refusal *why) {
     const int32_t unknown = sweep_all(s, m, eta, drive, heading);
     if (unknown != 0) return laconic_articulated_refuse_twist(unknown, m, drive, why);
     project_root(s, m, eta, true);
