@@ -68,8 +68,8 @@ INLINE void turn_hinges(stage_sums *sums, articulated_sweep *s, const laconic_ar
                     start->angle_rad[b] + laconic_articulated_turn_from_to(start->toward[b], s->toward[b]);
             continue;
         }
-        sums->by.turn_rad[b] += stage_weight[g] * s->rate[b];
         if (link->motion == LACONIC_MOTION_COORDINATED) continue;
+        sums->by.turn_rad[b] += stage_weight[g] * s->rate[b];
         const real turn = ahead * s->rate[b];
         s->toward[b] = turned_by(start->toward[b], turn);
         s->angle_rad[b] = start->angle_rad[b] + turn;

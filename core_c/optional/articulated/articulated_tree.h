@@ -52,7 +52,8 @@ typedef struct articulated_sweep {
     real row_bias[LACONIC_MAX_LEFT_ROWS], row_value[LACONIC_MAX_LEFT_ROWS];
     vector along[1]; /* U = T/|T| in the metric of body 0, where it is commanded   */
     vector along_rate;
-    real along_share; /* T·I₀T'/|T|²                                                                          */
+    real along_share;  /* T·I₀T'/|T|²                                                                          */
+    real least_square; /* |w|² of a hinge without direction                                                    */
     real module_mass, module_push; /* of coordinated leaves, seen along U; 0 where they are summed at the root       */
     real inverse_size
         [BODIES]; /* 1/|w| of coordinated hinges, 1/|T| of body 0, of the posture before; 0: unknown       */
@@ -97,11 +98,17 @@ INLINE real inverse_root_near(real x, real guess) {
     return guess + guess * e * (R(0.5) + R(0.375) * e);
 }
 
+/* |w|² up to which w is too short beside T_v, of which it is the rest near a turning centre. */
+static inline real least_square_of(vector twist) {
+    return LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE * (twist.x * twist.x + twist.y * twist.y);
+}
+
 /* U and U'. False where T is 0. */
 INLINE bool take_unit_twist(articulated_sweep *s, const laconic_articulated_model *m, const articulated_drive *drive) {
     const vector t = drive->twist[0], momentum = form_times(&m->inertia, t);
     const real inverse = inverse_root_near(dot(momentum, t), s->inverse_size[0]);
     s->inverse_size[0] = inverse;
+    s->least_square = least_square_of(t);
     s->along[0] = scaled(inverse, t);
     s->along_rate = none;
     s->along_share = R(0);
@@ -114,11 +121,6 @@ INLINE bool take_unit_twist(articulated_sweep *s, const laconic_articulated_mode
 
 static inline direction twist_at_hinge(const laconic_link *link, vector twist) {
     return direction_with(twist.x - twist.z * link->hinge.y, twist.y + twist.z * link->hinge.x);
-}
-
-/* Whether w is long enough beside T_v, of which it is the rest near a turning centre. */
-static inline bool has_direction(real w_square, vector twist) {
-    return w_square > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE * (twist.x * twist.x + twist.y * twist.y);
 }
 
 typedef struct coordinated_motion {
@@ -137,7 +139,7 @@ INLINE coordinated_motion coordinate(articulated_sweep *s, const laconic_link *l
     const real inverse = inverse_root_near(c.square_size, guess);
     s->inverse_size[b] = inverse;
     s->toward[b - 1] = direction_with(w.cosine * inverse, w.sine * inverse);
-    if (has_direction(c.square_size, drive->twist[0])) c.size = c.square_size * inverse;
+    if (c.square_size > s->least_square) c.size = c.square_size * inverse;
     if (drive->turns) {
         const direction w1 = twist_at_hinge(link, drive->twist[1]), w2 = twist_at_hinge(link, drive->twist[2]);
         const real per_square = inverse * inverse;

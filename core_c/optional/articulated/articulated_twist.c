@@ -50,7 +50,7 @@ laconic_status laconic_articulated_check_twist(const laconic_articulated_model *
         const laconic_link *link = &m->link[b - 1];
         if (link->motion != LACONIC_MOTION_COORDINATED) continue;
         const direction w = twist_at_hinge(link, to->twist[0]);
-        if (!has_direction(w.cosine * w.cosine + w.sine * w.sine, to->twist[0]))
+        if (!(w.cosine * w.cosine + w.sine * w.sine > least_square_of(to->twist[0])))
             return laconic_articulated_refuse_twist(b, m, to, why);
         status = check_turn(link, b, from->twist[0], to->twist[0], largest_sine, why);
     }

@@ -79,8 +79,7 @@ int main(int count, char **words) {
     const laconic_articulated_start start = start_at(0.5, 0, 0);
     commands(ends);
     laconic_articulated_state s = hinged_state(&m, &start, &ends[0]);
-    const laconic_articulated_integrator i =
-        hinged_integrator(&m, laconic_articulated_method_by_name(words[2]), STEP);
+    const laconic_articulated_integrator i = hinged_integrator(&m, laconic_articulated_method_by_name(words[2]), STEP);
     for (long k = 0; k < steps; k++) {
         const laconic_articulated_input *a = &ends[k % 2], *b = commanded ? &ends[(k + 1) % 2] : a;
         if (!commanded) a = b = &ends[0];
