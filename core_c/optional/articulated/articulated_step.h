@@ -3,7 +3,7 @@
 #ifndef LACONIC_ARTICULATED_STEP_H
 #define LACONIC_ARTICULATED_STEP_H
 
-#include "articulated_tree.h"
+#include "articulated_visit.h"
 
 #if LACONIC_MAX_BODIES > 0
 
