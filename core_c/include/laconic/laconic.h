@@ -51,9 +51,9 @@
  *                           ground.axle_friction_Nm dry friction. Any other torque is given as axle_torque_Nm, with
  *                           c1 = c2 = 0 where it replaces the motor's.
  *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
- *                           fixed wheel is no swivel caster: it does not swivel.)
- *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. (4.7) does not
- *                           describe Ackermann and swerve drives that steer while they move.
+ *                           fixed wheel is not a swivel caster: it does not swivel.) articulated.h has casters that do.
+ *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. Wheels that steer
+ *                           while the vehicle moves, and trailers: articulated.h.
  *          skid steering    on ideal ground fixed wheels on more than one axle line cannot yaw: give the ground its
  *                           friction, or one axle line in the middle with the others as supports. */
 #ifndef LACONIC_H

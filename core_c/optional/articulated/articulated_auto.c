@@ -92,7 +92,7 @@ static uint32_t stiff_part_size(const laconic_articulated_state *state, const la
 
 /* Takes what is left of a step in parts, on a copy, as a later part may be refused. */
 RARE laconic_status step_in_parts(laconic_articulated_state *state, const laconic_articulated_model *m,
-                               const articulated_course *course, auto_progress p, laconic_refusal *why) {
+                                  const articulated_course *course, auto_progress p, laconic_refusal *why) {
     laconic_articulated_state after = *state;
     bool was_stiff = false;
     while (p.done < WHOLE_STEP) {

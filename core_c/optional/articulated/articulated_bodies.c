@@ -158,8 +158,8 @@ static laconic_status classify(laconic_articulated_model *m, laconic_hinge_kind 
 
 static void fill_link(laconic_link *link, const laconic_articulated_model *m, const laconic_body *hung) {
     const real sx = hung->com_x_m, sy = hung->com_y_m, mass = hung->mass_kg;
-    const laconic_form inertia = {mass,       R(0),      mass, -mass * sy,
-                                  mass * sx, hung->yaw_inertia_kgm2 + mass * (sx * sx + sy * sy)};
+    const laconic_form inertia = {mass,       R(0),      mass,
+                                  -mass * sy, mass * sx, hung->yaw_inertia_kgm2 + mass * (sx * sx + sy * sy)};
     const bool on_carriage = hung->parent == 0, acts = hung->hinge <= LACONIC_HINGE_MOTOR;
     link->parent = hung->parent;
     link->hinge = vector_of(on_carriage ? hung->hinge_x_m - m->com_x_m : hung->hinge_x_m,

@@ -148,8 +148,8 @@ static bool eliminate_unknowns(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], r
 }
 
 /* ¼h² K, K = Σ stiffness (ω_b − ω_p)(ω_b − ω_p)ᵀ, from the rates that each velocity alone gives a hinge. */
-static void add_springs(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], articulated_sweep *s, const laconic_articulated_model *m,
-                        const articulated_drive *drive, real h) {
+static void add_springs(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], articulated_sweep *s,
+                        const laconic_articulated_model *m, const articulated_drive *drive, real h) {
     real rate[LACONIC_MAX_VELOCITIES][LACONIC_MAX_BODIES];
     articulated_drive still = *drive;
     bool springs = false;
@@ -227,8 +227,8 @@ static laconic_status commanded_ready(articulated_sweep *s, const laconic_articu
 
 /* Means of all twists at the middle's angles; slope of X_0. */
 static void take_means(moebius_means *means, articulated_sweep *s, const laconic_articulated_model *m,
-                       const laconic_articulated_factors *factors, const articulated_drive *drive,
-                       const real *before, const real *d, real h) {
+                       const laconic_articulated_factors *factors, const articulated_drive *drive, const real *before,
+                       const real *d, real h) {
     real mean[LACONIC_MAX_VELOCITIES], slope[LACONIC_MAX_VELOCITIES];
     for (int32_t i = 0; i < m->dof; i++) {
         mean[i] = before[i] + factors->mean[i] * d[i];
@@ -285,8 +285,8 @@ static void combine_points(articulated_increment *by, const laconic_articulated_
                            const laconic_articulated_state *state, const moebius_point *once,
                            const moebius_point *twice, const moebius_means means[3], real share) {
     for (int32_t i = 0; i < m->dof; i++)
-        by->eta[i] = extrapolated_number(twice->eta[i] - state->eta[i].value, once->eta[i] - state->eta[i].value,
-                                         share);
+        by->eta[i] =
+            extrapolated_number(twice->eta[i] - state->eta[i].value, once->eta[i] - state->eta[i].value, share);
     for (int32_t b = 0; b < m->body_count; b++)
         by->turn_rad[b] = extrapolated_number(twice->turn_rad[b], once->turn_rad[b], share);
     for (int32_t b = 0; b <= m->body_count; b++) {

@@ -128,7 +128,8 @@ static void moebius_4_keeps_the_steady_speed_of_stiff_motors(void) {
 /* ------------------------------------------------------------------------------------- stiff -- */
 
 /* Differences of auto from rk4 at a step of 20 µs, over the size of the rates at the start. */
-static double error_of_auto(laconic_articulated_vehicle v, const laconic_articulated_input *in, double speed, double h) {
+static double error_of_auto(laconic_articulated_vehicle v, const laconic_articulated_input *in, double speed,
+                            double h) {
     const laconic_articulated_model m = hinged_model(v);
     laconic_articulated_start start = start_at(speed, 0, 0);
     start.hinge_angle_rad[0] = REAL(0.3);

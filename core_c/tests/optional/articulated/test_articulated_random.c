@@ -25,8 +25,8 @@ static double scale_of(double usual) {
 static void random_wheel(laconic_articulated_vehicle *v, int body) {
     static const double axles[] = {ALONG, PI / 2, 0, 0.3};
     if (v->base.wheel_count == LACONIC_MAX_WHEELS) return;
-    laconic_wheel *w = hang_wheel(v, body, choice(3) == 0 ? 0 : uniform(-0.5, 0.1), choice(3) == 0 ? 0 : uniform(-0.3, 0.3),
-                                  scale_of(0.01));
+    laconic_wheel *w = hang_wheel(v, body, choice(3) == 0 ? 0 : uniform(-0.5, 0.1),
+                                  choice(3) == 0 ? 0 : uniform(-0.3, 0.3), scale_of(0.01));
     w->axle_rad = REAL(axles[choice(6) < 4 ? 0 : choice(4)]);
     w->own_motor_gain_Nm_per_V = REAL(choice(2) == 0 ? scale_of(1) : 0);
     w->own_motor_damping_Nms = REAL(choice(2) == 0 ? scale_of(0.5) : 0);

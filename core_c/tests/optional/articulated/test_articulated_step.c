@@ -56,8 +56,8 @@ static void every_number_of_an_input_is_named_where_it_is_not_finite(void) {
                        laconic_articulated_step(&m, &i, &s, &bad, &bad, &why), why);
         bad = good;
         bad.hinge_torque_Nm[0] = values[k];
-        ASSERT_REFUSED(LACONIC_NOT_FINITE, OF(HINGE_TORQUE), 1,
-                       laconic_articulated_step(&m, &i, &s, &good, &bad, &why), why);
+        ASSERT_REFUSED(LACONIC_NOT_FINITE, OF(HINGE_TORQUE), 1, laconic_articulated_step(&m, &i, &s, &good, &bad, &why),
+                       why);
         bad = good;
         bad.hinge_rate_rad_per_s[2] = values[k];
         ASSERT_REFUSED(LACONIC_NOT_FINITE, OF(HINGE_RATE), 3, laconic_articulated_step(&m, &i, &s, &good, &bad, &why),
@@ -204,7 +204,8 @@ static void ramps_need_values_alone(void) {
     const double h = 0.01;
     const laconic_articulated_integrator i = hinged_integrator(&m, LACONIC_ARTICULATED_AUTO, h);
     for (int k = 0; k < 100; k++) {
-        laconic_articulated_input a = twist_of(1, sin(k * h), 0.5 * k * h), b = twist_of(1, sin((k + 1) * h), 0.5 * (k + 1) * h);
+        laconic_articulated_input a = twist_of(1, sin(k * h), 0.5 * k * h),
+                                  b = twist_of(1, sin((k + 1) * h), 0.5 * (k + 1) * h);
         laconic_articulated_ramp(&a, &b, REAL(h));
         ASSERT_TAKEN(laconic_articulated_step(&m, &i, &s, &a, &b, &refusal));
     }

@@ -233,8 +233,9 @@ static void a_steered_wheel_across_the_vehicle_is_regular(void) {
     laconic_articulated_state s = hinged_state(&m, &start, &in);
     in.base.voltage_V[2] = 6;
     run_held(&m, &s, LACONIC_ARTICULATED_AUTO, 0.01, 100, &in);
-    ASSERT_NEAR(EITHER(1e-12, 1e-4), 0, motion_of(&m, &s).velocity_m_per_s[0] + REAL(0.02) *
-                motion_of(&m, &s).yaw_rate_rad_per_s); /* it turns about the middle of the rear axle */
+    ASSERT_NEAR(EITHER(1e-12, 1e-4), 0,
+                motion_of(&m, &s).velocity_m_per_s[0] +
+                    REAL(0.02) * motion_of(&m, &s).yaw_rate_rad_per_s); /* it turns about the middle of the rear axle */
 }
 
 int main(void) {
