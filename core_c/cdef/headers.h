@@ -1,6 +1,7 @@
 /* The headers whose functions Python calls. */
 #include "laconic/laconic.h"
 
+#include "laconic/articulated.h"
 #include "laconic/batch.h"
 #include "laconic/derivatives.h"
 #include "laconic/estimate.h"

@@ -19,5 +19,8 @@ function(laconic_development real)
                 "${CMAKE_CURRENT_SOURCE_DIR}/cdef/headers.h" -o "${cdef}"
         DEPENDS ${core_headers} "${CMAKE_CURRENT_SOURCE_DIR}/cdef/headers.h" COMMAND_EXPAND_LISTS VERBATIM)
     add_custom_target(laconic_cdef_${real} ALL DEPENDS "${cdef}")
+    if(real STREQUAL "double") # the list of methods, for an installed package that has this build tree alone
+        configure_file(include/laconic/methods.h "${CMAKE_BINARY_DIR}/lib/laconic_methods.h" COPYONLY)
+    endif()
     laconic_purity(${real})
 endfunction()

@@ -45,13 +45,15 @@ static uint32_t version(void) {
     return whole | part;
 }
 
+#define METHOD_BITS 8 /* of IDENTITY.methods; a later method has none, and COMMIT refuses one that is not there */
+
 static void pack_identity(const laconic_node *node, uint8_t *data) {
     data[1] = (uint8_t)(speaks_fd(node) << 4);
     data[2] = LACONIC_WIRE_VERSION;
     put16(data + 3, version());
     data[5] = sizeof(laconic_real);
     data[6] = LACONIC_MAX_WHEELS;
-    for (int32_t k = 0; k < LACONIC_METHOD_COUNT; k++)
+    for (int32_t k = 0; k < LACONIC_METHOD_COUNT && k < METHOD_BITS; k++)
         if (node->config.method(k) != NULL) data[7] = (uint8_t)(data[7] | 1U << k);
 }
 

@@ -7,6 +7,7 @@ set(vehicle_description "${PROJECT_SOURCE_DIR}/modelDescription.xml")
 laconic_fmu(Laconic
     DESCRIPTION "${vehicle_description}"
     FIELDS "${PROJECT_SOURCE_DIR}/core_c/include/laconic/vehicle.h" "${PROJECT_SOURCE_DIR}/core_c/include/laconic/sensors.h"
+    METHODS "${PROJECT_SOURCE_DIR}/core_c/include/laconic/methods.h"
     FOLDER vehicle
     SOURCES ${vehicle_sources}
     HEADERS model.h ${vehicle_headers}

@@ -57,8 +57,8 @@ _MODULES = {  # name → where it is, and as what if not by the same name
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
     "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives",
     "Study": "tools.analyse.findings", "Trajectory": "simulation", "Vehicle": "core",
-    "analyse": "tools.analyse.analyse", "build_scene": "scene", "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting",
-    "read_scene": "scene", "scene_names": "base.paths", "simulate": "simulation"}
+    "analyse": "tools.analyse.analyse", "build_scene": "scene", "load_core": "core:load", "make_fmu": "fmu",
+    "plot": "pictures.plotting", "read_scene": "scene", "scene_names": "base.paths", "simulate": "simulation"}
 
 
 if not TYPE_CHECKING:  # a type checker would take every name for one that this function knows

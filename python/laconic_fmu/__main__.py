@@ -12,6 +12,7 @@ from .estimate import with_estimate, without_estimate
 from .field_list import missing_variable
 from .for_vehicle import for_vehicle
 from .licences import licence_parts, ziglang_in
+from .method_list import differing_item, methods_in, with_items
 from .of_step import of_step
 from .package import pack
 from .tables import tables
@@ -27,6 +28,8 @@ def make_tables(arguments: argparse.Namespace) -> None:
     for header in arguments.fields:
         if fault := missing_variable(header, arguments.description, description):
             sys.exit(fault)
+    if arguments.methods and (fault := differing_item(arguments.methods, arguments.description, description)):
+        sys.exit(fault)
     description = with_estimate(description) if arguments.estimate else without_estimate(description)
     generic = for_vehicle(description)
     if arguments.of_step:
@@ -75,6 +78,13 @@ def renew_token(arguments: argparse.Namespace) -> None:
     arguments.description.write_text(with_token(text), encoding="utf-8")
 
 
+def renew_methods(arguments: argparse.Namespace) -> None:
+    """Gives modelDescription.xml the core's methods, and the token that belongs to its text."""
+    text = arguments.description.read_text(encoding="utf-8")
+    methods = methods_in(arguments.header.read_text(encoding="utf-8"))
+    arguments.description.write_text(with_token(with_items(text, methods)), encoding="utf-8")
+
+
 def main() -> None:
     """Runs the subcommand on the command line."""
     parser = argparse.ArgumentParser(prog="laconic_fmu", description=__doc__)
@@ -86,6 +96,8 @@ def main() -> None:
     command.add_argument("--versions", nargs="*", default=["2", "3"], help="the FMI versions of this FMU")
     command.add_argument("--fields", type=Path, nargs="*", default=[],
                          help="headers with the core's lists of fields, each of which must be a variable")
+    command.add_argument("--methods", type=Path,
+                         help="the header with the core's list of methods, each of which must be an item")
     command.add_argument("--of-step", action="store_true", help="derivatives of communication steps")
     command.add_argument("--estimate", action="store_true", help="with an error estimate")
     command.set_defaults(run=make_tables)
@@ -104,6 +116,10 @@ def main() -> None:
     command = commands.add_parser("renew-token")
     command.add_argument("description", type=Path)
     command.set_defaults(run=renew_token)
+    command = commands.add_parser("renew-methods")
+    command.add_argument("description", type=Path)
+    command.add_argument("header", type=Path, help="with the core's list of methods")
+    command.set_defaults(run=renew_methods)
     arguments = parser.parse_args()
     arguments.run(arguments)
 

@@ -124,8 +124,8 @@ typedef enum laconic_articulated_field {
 
 /* ---------------------------------------------------------------------------------- model -- */
 
-#define LACONIC_MAX_VELOCITIES (3 + LACONIC_MAX_BODIES)  /* of η */
-#define LACONIC_MAX_LEFT_ROWS (3 * LACONIC_MAX_BODIES)   /* of C */
+#define LACONIC_MAX_VELOCITIES (3 + LACONIC_MAX_BODIES) /* of η */
+#define LACONIC_MAX_LEFT_ROWS (3 * LACONIC_MAX_BODIES)  /* of C */
 
 /* A symmetric 3×3 matrix on twists. */
 typedef struct laconic_form {
@@ -143,24 +143,24 @@ typedef enum laconic_hinge_motion {
 typedef struct laconic_link {
     int32_t parent;
     laconic_hinge_motion motion;
-    int32_t column;                 /* of its ω in η, where that is its own; else −1                   */
-    int32_t first_row, row_end;     /* rows left over of this body: first_row … row_end − 1             */
-    uint32_t own_below, rows_below; /* bit k: own hinge k, row k belongs to this body or hangs on it    */
-    laconic_vector hinge;           /* from the parent's origin (parent 0: from S_0); z is 0            */
-    laconic_vector first_moment;    /* m s_ξ, m s_η, m                                                  */
-    laconic_form inertia, drag;     /* I_b, D_b                                                         */
-    bool drags;                     /* D_b is not 0                                                     */
-    bool is_leaf;                   /* no other body hangs on it                                        */
-    bool is_plain_follower;         /* a following leaf without rows left over                          */
+    int32_t column;                               /* of its ω in η, where that is its own; else −1                   */
+    int32_t first_row, row_end;                   /* rows left over of this body: first_row … row_end − 1             */
+    uint32_t own_below, rows_below;               /* bit k: own hinge k, row k belongs to this body or hangs on it    */
+    laconic_vector hinge;                         /* from the parent's origin (parent 0: from S_0); z is 0            */
+    laconic_vector first_moment;                  /* m s_ξ, m s_η, m                                                  */
+    laconic_form inertia, drag;                   /* I_b, D_b                                                         */
+    bool drags;                                   /* D_b is not 0                                                     */
+    bool is_leaf;                                 /* no other body hangs on it                                        */
+    bool is_plain_follower;                       /* a following leaf without rows left over                          */
     laconic_form followed_inertia, followed_drag; /* of a following hinge: on V alone, ω put in          */
-    laconic_vector axle_per_lever;  /* of a following hinge: n/ℓ, and 1/ℓ as z                          */
+    laconic_vector axle_per_lever;                /* of a following hinge: n/ℓ; z is 0                                */
     laconic_real damping_Nms, stiffness_Nm, rest_rad, gain_Nm_per_V;
 } laconic_link;
 
 /* One row left over: n·V + ℓ ω = 0. */
 typedef struct laconic_left_row {
-    int32_t body, wheel;   /* the first wheel that asks for it, from 0 */
-    laconic_vector axle;   /* n_ξ, n_η, ℓ in the body's frame          */
+    int32_t body, wheel; /* the first wheel that asks for it, from 0 */
+    laconic_vector axle; /* n_ξ, n_η, ℓ in the body's frame          */
 } laconic_left_row;
 
 /* A wheel in the frame of its body. */
@@ -177,26 +177,27 @@ typedef struct laconic_articulated_wheel {
 /* Prepared constants; read them, do not write them. */
 typedef struct laconic_articulated_model {
     int32_t body_count, wheel_count;
-    int32_t carriage_dof;    /* m: ζ of the carriage; 1 where the twist coordinates hinges                   */
-    int32_t own_count;       /* own hinges                                                                  */
-    int32_t dof;             /* m + own_count, before the rows left over                                    */
-    int32_t row_count;       /* rows left over                                                              */
-    int32_t last_inner;      /* the last body on which another hangs                                        */
-    bool coordinated;        /* some hinge is coordinated: the carriage moves along the twist alone          */
-    laconic_vector column[3];     /* X_0 = Σ column_k ζ_k, columns have unit energy                          */
-    laconic_form pair[6];         /* column_iᵀ A column_j = pair · A, for (0,0) (1,0) (1,1) (2,0) (2,1) (2,2) */
-    laconic_real decay_per_s[3];  /* r_k of the carriage alone                                               */
-    int32_t column_count;         /* of the carriage alone                                                   */
-    laconic_vector held[2];       /* rows with row·X_0 = 0 on all motions that its own wheels allow          */
+    int32_t carriage_dof;        /* m: ζ of the carriage; 1 where the twist coordinates hinges                   */
+    int32_t own_count;           /* own hinges                                                                  */
+    int32_t dof;                 /* m + own_count, before the rows left over                                    */
+    int32_t row_count;           /* rows left over                                                              */
+    int32_t last_inner;          /* the last body on which another hangs                                        */
+    bool coordinated;            /* some hinge is coordinated: the carriage moves along the twist alone          */
+    laconic_vector column[3];    /* X_0 = Σ column_k ζ_k, columns have unit energy                          */
+    laconic_form pair[6];        /* column_iᵀ A column_j = pair · A, for (0,0) (1,0) (1,1) (2,0) (2,1) (2,2) */
+    laconic_real decay_per_s[3]; /* r_k of the carriage alone                                               */
+    int32_t column_count;        /* of the carriage alone                                                   */
+    laconic_vector held[2];      /* rows with row·X_0 = 0 on all motions that its own wheels allow          */
     int32_t held_count;
-    laconic_real mass_kg;         /* of body 0 with payload                                                  */
-    laconic_form inertia, drag;   /* of body 0, about S_0                                                    */
+    laconic_real mass_kg;       /* of body 0 with payload                                                  */
+    laconic_form inertia, drag; /* of body 0, about S_0                                                    */
     laconic_real com_x_m, com_y_m;
     laconic_link link[LACONIC_MAX_BODIES];
     laconic_left_row row[LACONIC_MAX_LEFT_ROWS];
     laconic_articulated_wheel wheel[LACONIC_MAX_WHEELS];
-    laconic_real length_m;        /* size of the vehicle, for comparisons of lengths                         */
-    laconic_real fastest_decay_per_s; /* of motors, hinges and springs together, the largest of several postures */
+    laconic_real length_m;            /* size of the vehicle, for comparisons of lengths                         */
+    laconic_real fastest_decay_per_s; /* of motors and hinges, the largest of several postures               */
+    laconic_real fastest_swing_per_s; /* of springs, likewise                                               */
     laconic_real friction_coefficient;
     laconic_vector slope_acceleration; /* downhill, world axes; 0 on level ground */
 } laconic_articulated_model;
@@ -208,13 +209,14 @@ typedef struct laconic_articulated_model {
  *   OVERFLOW               numbers of a body or wheel
  *   COORDINATED_ON_BODY    a coordinated hinge whose parent is not the carriage
  *   COORDINATED_WHEEL      a fixed wheel of a coordinated body does not roll along ξ with its axle line through the hinge
+ *   COORDINATED_TOO_FEW    the carriage's own wheels and coordinated ones together leave more than one motion
  *   MASSLESS_HINGE         an own hinge turns without inertia
  *   STEERED_TOO_OFTEN      fixed wheels under free or motor hinges hold the carriage at nearly every angle: three
  *                          motor-driven modules, or two behind which the carriage has an axle
  *   NOTHING_MOVES          wheels of one body hold it
  *   FRICTION_WITH_HINGES   the vehicle has ground friction or limits of a drive */
-laconic_status laconic_articulated_prepare(laconic_articulated_model *model,
-                                           const laconic_articulated_vehicle *vehicle, laconic_refusal *why);
+laconic_status laconic_articulated_prepare(laconic_articulated_model *model, const laconic_articulated_vehicle *vehicle,
+                                           laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- input -- */
 
@@ -244,8 +246,8 @@ typedef struct laconic_articulated_state {
     laconic_sum eta[LACONIC_MAX_VELOCITIES];
     laconic_sum x_m, y_m;
     laconic_heading heading;
-    laconic_heading hinge[LACONIC_MAX_BODIES];       /* ψ, wraps exactly as the heading does                  */
-    laconic_sum travel[LACONIC_MAX_BODIES + 1][3];   /* ∫X_b dt since the wheel angles were last set           */
+    laconic_heading hinge[LACONIC_MAX_BODIES];     /* ψ, wraps exactly as the heading does                  */
+    laconic_sum travel[LACONIC_MAX_BODIES + 1][3]; /* ∫X_b dt since the wheel angles were last set           */
     laconic_real wheel_angle_set_rad[LACONIC_MAX_WHEELS];
     laconic_real hinge_rate_rad_per_s[LACONIC_MAX_BODIES]; /* r at this moment, 0 of other hinges             */
     laconic_vector twist, twist_rate;                      /* T and T' at this moment, of S_0                  */
@@ -280,7 +282,8 @@ typedef enum laconic_articulated_method {
     LACONIC_ARTICULATED_AUTO = 0,     /* every vehicle and step; divides a step where motion is fast           */
     LACONIC_ARTICULATED_RK4 = 1,      /* order 4; h v/a < 2.78 (a: trail of a caster) and h·r < 2.78            */
     LACONIC_ARTICULATED_CIRCLE = 2,   /* order 4; following angles by exact maps of the circle; h·r < 2.78      */
-    LACONIC_ARTICULATED_MOEBIUS_4 = 3 /* order 4; any damping                                                  */
+    LACONIC_ARTICULATED_MOEBIUS_4 = 3 /* order 4; any damping. Order 3 with rows left over, and 2, but stable, where
+                                         a spring swings faster than the step (h·rate above 1)                  */
 } laconic_articulated_method;
 
 #define LACONIC_ARTICULATED_METHOD_COUNT 4
@@ -293,9 +296,10 @@ int32_t laconic_articulated_method_by_name(const char *name);
 
 /* Factors of an exponential step, per velocity, with a = h r and φ at −a. */
 typedef struct laconic_articulated_factors {
-    laconic_real correction[LACONIC_MAX_VELOCITIES]; /* h (r/(1 − e^−a) − 1/h − r/2): makes a midpoint step exponential */
-    laconic_real mean[LACONIC_MAX_VELOCITIES];       /* κ = φ2/φ1                                                    */
-    laconic_real slope[LACONIC_MAX_VELOCITIES];      /* 12 (φ2/2 − φ3)/φ1                                            */
+    laconic_real
+        correction[LACONIC_MAX_VELOCITIES];     /* h (r/(1 − e^−a) − 1/h − r/2): makes a midpoint step exponential */
+    laconic_real mean[LACONIC_MAX_VELOCITIES];  /* κ = φ2/φ1                                                    */
+    laconic_real slope[LACONIC_MAX_VELOCITIES]; /* 12 (φ2/2 − φ3)/φ1                                            */
 } laconic_articulated_factors;
 
 /* One method prepared for one step size. */

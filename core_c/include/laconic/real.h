@@ -99,7 +99,7 @@ typedef int64_t laconic_turns;
 #ifndef LACONIC_WITH_FRICTION /* 0: ideal ground and motors without limits alone */
 #define LACONIC_WITH_FRICTION 1
 #endif
-#ifndef LACONIC_WITH_EXPONENTIAL_GAUSS /* 0: integrators have no room for the weights of exponential-gauss-8 */
+#ifndef LACONIC_WITH_EXPONENTIAL_GAUSS /* 0: integrators have no room for weights, and no method that needs them */
 #define LACONIC_WITH_EXPONENTIAL_GAUSS 1
 #endif
 #ifndef LACONIC_WITH_PREPARE /* 0: model and integrator are constants made by the host */

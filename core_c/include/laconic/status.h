@@ -5,18 +5,11 @@
 
 #include "laconic/real.h"
 
-#if LACONIC_WITH_EXPONENTIAL_GAUSS
-#define LACONIC_FIRST_METHODS "auto, rk4"
-#define LACONIC_LAST_METHODS ", taylor-8 or exponential-gauss-8"
-#else
-#define LACONIC_FIRST_METHODS "rk4"
-#define LACONIC_LAST_METHODS " or taylor-8"
-#endif
-
 /* clang-format off */
 
-/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit). The numbers go
- * on the wire: a new one comes last, and into the value table of RESULT.status in laconic.dbc. */
+/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit, $ for the names of
+ * the methods). The numbers go on the wire: a new one comes last, and into the value table of RESULT.status in
+ * laconic.dbc. */
 #define LACONIC_STATUSES(X) \
     X(OK, "ok", \
       "ok") \
@@ -46,8 +39,7 @@
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
       "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
     X(METHOD_UNKNOWN, "method unknown", \
-      "there is no such method; use " LACONIC_FIRST_METHODS ", exponential-kahan, exponential-kahan-4, exact-flow, " \
-      "exact-flow-4" LACONIC_LAST_METHODS) \
+      "there is no such method; use $") \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
       "the interval is no whole number of steps of # s; use @ s") \
     X(STEP_BEYOND_DAMPING_LIMIT, "step beyond damping limit", /* explicit methods: h·r_max above their limit */ \
@@ -90,6 +82,9 @@
     X(COORDINATED_WHEEL, "coordinated wheel", \
       "a fixed wheel on a coordinated hinge must roll along its body's first axis, with the hinge on its axle line; " \
       "give axle_rad = pi/2 or -pi/2 and x_m = 0") \
+    X(COORDINATED_TOO_FEW, "coordinated too few", \
+      "# axle lines hold the carriage to the twist, but @ are needed: those of its own fixed wheels and of coordinated " \
+      "ones; use a prescribed or motor hinge") \
     X(MASSLESS_HINGE, "massless hinge", /* an own hinge without inertia; limit: none */ \
       "this hinge turns without inertia, and no wheel behind it sets its rate; give the body a yaw inertia, place the " \
       "wheel behind the hinge (a trail), or prescribe the rate") \

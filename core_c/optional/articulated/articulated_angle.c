@@ -17,8 +17,7 @@ real laconic_articulated_angle_of(direction d) {
     const real t = small / large, inverse = R(1) / laconic_root(R(1) + t * t);
     const real steep = t * (R(0.78539816339744830962) + R(0.273) * (R(1) - t));
     const direction rough = direction_near(steep < R(0.78) ? steep : R(0.78), 0);
-    real angle = (steep < R(0.78) ? steep : R(0.78)) +
-                 small_arcsine((t * rough.cosine - rough.sine) * inverse);
+    real angle = (steep < R(0.78) ? steep : R(0.78)) + small_arcsine((t * rough.cosine - rough.sine) * inverse);
     if (y > x) angle = R(1.57079632679489661923) - angle;
     if (d.cosine < R(0)) angle = R(3.14159265358979323846) - angle;
     return d.sine < R(0) ? -angle : angle;

@@ -14,7 +14,7 @@
 #if LACONIC_MAX_BODIES > 0
 
 #define WHOLE_STEP ((uint32_t)1 << 20) /* a step, in units in which parts are counted */
-#define MOST_PARTS ((uint32_t)256)
+#define MOST_AUTO_PARTS ((uint32_t)256)
 #define FEWEST_STIFF_PARTS ((uint32_t)64)
 #define LARGEST_RATE_OF_PART R(0.25) /* rate · part */
 
@@ -54,8 +54,8 @@ static laconic_status explicit_part(laconic_articulated_state *state, const laco
     if (!is_too_long(status)) return status;
     const real longest = found->limit / course->step_s;
     p->part = part / 2U;
-    while (p->part > WHOLE_STEP / MOST_PARTS && unit * (real)p->part > longest) p->part /= 2U;
-    p->stiff = p->part <= WHOLE_STEP / MOST_PARTS && unit * (real)p->part > longest;
+    while (p->part > WHOLE_STEP / MOST_AUTO_PARTS && !(unit * (real)p->part <= longest)) p->part /= 2U;
+    p->stiff = p->part < WHOLE_STEP / MOST_AUTO_PARTS || !(unit * (real)p->part <= longest); /* or a rate is NaN */
     return LACONIC_OK;
 }
 
@@ -86,13 +86,13 @@ static uint32_t stiff_part_size(const laconic_articulated_state *state, const la
     if (sweep_outward(&s, m, eta, &course->start) != 0) return WHOLE_STEP;
     const posture_rates fast = rates_of_posture(&s, m);
     const real caster = laconic_root(fast.caster_square), rate = caster > fast.yaw ? caster : fast.yaw;
-    return part_for(R(1) / (real)WHOLE_STEP, WHOLE_STEP / FEWEST_STIFF_PARTS, WHOLE_STEP / MOST_PARTS,
+    return part_for(R(1) / (real)WHOLE_STEP, WHOLE_STEP / FEWEST_STIFF_PARTS, WHOLE_STEP / MOST_AUTO_PARTS,
                     rate * course->step_s);
 }
 
 /* Takes what is left of a step in parts, on a copy, as a later part may be refused. */
-RARE laconic_status take_parts(laconic_articulated_state *state, const laconic_articulated_model *m,
-                               const articulated_course *course, auto_progress p, laconic_refusal *why) {
+RARE laconic_status step_in_parts(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                  const articulated_course *course, auto_progress p, laconic_refusal *why) {
     laconic_articulated_state after = *state;
     bool was_stiff = false;
     while (p.done < WHOLE_STEP) {
@@ -110,17 +110,17 @@ RARE laconic_status take_parts(laconic_articulated_state *state, const laconic_a
 laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
                                         const laconic_articulated_integrator *integrator,
                                         const articulated_course *course, laconic_refusal *why) {
-    auto_progress p = {0U, WHOLE_STEP / (uint32_t)integrator->parts, integrator->parts > (int32_t)MOST_PARTS};
+    auto_progress p = {0U, WHOLE_STEP / (uint32_t)integrator->parts, integrator->parts > (int32_t)MOST_AUTO_PARTS};
     laconic_refusal found = ALL_ZERO;
-    if (p.part < WHOLE_STEP) return take_parts(state, m, course, p, why);
+    if (p.part < WHOLE_STEP) return step_in_parts(state, m, course, p, why);
     const laconic_status status = explicit_part(state, m, course, &p, &found);
     if (status != LACONIC_OK) return refuse(why, status, found.field, found.item, found.value, found.limit);
-    return p.done == WHOLE_STEP ? LACONIC_OK : take_parts(state, m, course, p, why);
+    return p.done == WHOLE_STEP ? LACONIC_OK : step_in_parts(state, m, course, p, why);
 }
 
 int32_t laconic_articulated_parts_for(real rate_step) {
     int32_t parts = 1;
-    while (parts <= (int32_t)MOST_PARTS && rate_step > LARGEST_RATE_OF_PART * (real)parts) parts *= 2;
+    while (parts <= (int32_t)MOST_AUTO_PARTS && rate_step > LARGEST_RATE_OF_PART * (real)parts) parts *= 2;
     return parts;
 }
 

@@ -115,7 +115,7 @@ static void follow_row(laconic_link *link, body_rows *rows, int32_t k, real leng
     const vector row = rows->row[k];
     const real inverse = R(1) / (row.z * length);
     link->motion = LACONIC_MOTION_FOLLOWING;
-    link->axle_per_lever = vector_of(row.x * inverse, row.y * inverse, inverse);
+    link->axle_per_lever = vector_of(row.x * inverse, row.y * inverse, R(0));
     for (int32_t j = 0; j < rows->count; j++) {
         if (j == k) continue;
         vector rest = minus(rows->row[j], scaled(rows->row[j].z / row.z, row));
@@ -158,8 +158,8 @@ static laconic_status classify(laconic_articulated_model *m, laconic_hinge_kind 
 
 static void fill_link(laconic_link *link, const laconic_articulated_model *m, const laconic_body *hung) {
     const real sx = hung->com_x_m, sy = hung->com_y_m, mass = hung->mass_kg;
-    const laconic_form inertia = {mass,       R(0),      mass, -mass * sy,
-                                  mass * sx, hung->yaw_inertia_kgm2 + mass * (sx * sx + sy * sy)};
+    const laconic_form inertia = {mass,       R(0),      mass,
+                                  -mass * sy, mass * sx, hung->yaw_inertia_kgm2 + mass * (sx * sx + sy * sy)};
     const bool on_carriage = hung->parent == 0, acts = hung->hinge <= LACONIC_HINGE_MOTOR;
     link->parent = hung->parent;
     link->hinge = vector_of(on_carriage ? hung->hinge_x_m - m->com_x_m : hung->hinge_x_m,

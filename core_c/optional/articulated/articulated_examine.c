@@ -129,27 +129,28 @@ static real fastest_of(articulated_sweep *s, const laconic_articulated_model *m,
 
 static void include_rate(laconic_articulated_model *m, articulated_sweep *s, const laconic_articulated_model *bare,
                          const articulated_drive *drive) {
-    const real rate =
-        MARGIN * (fastest_of(s, bare, drive, false) + laconic_root(fastest_of(s, bare, drive, true)));
-    if (!(rate <= m->fastest_decay_per_s)) m->fastest_decay_per_s = rate;
+    const real decay = MARGIN * fastest_of(s, bare, drive, false);
+    const real swing = MARGIN * laconic_root(fastest_of(s, bare, drive, true));
+    if (!(decay <= m->fastest_decay_per_s)) m->fastest_decay_per_s = decay;
+    if (!(swing <= m->fastest_swing_per_s)) m->fastest_swing_per_s = swing;
 }
 
 laconic_status laconic_articulated_examine(laconic_articulated_model *m, laconic_refusal *why) {
     laconic_articulated_model bare = *m;
     articulated_sweep s;
     articulated_drive drive;
-    bool moves = false;
+    bool stuck = false;
     bare.row_count = 0;
     for (int32_t posture = 0; posture < POSTURES; posture++) {
         real x[LACONIC_MAX_VELOCITIES];
         take_posture(&s, &drive, m, posture);
         if (!posture_mass(&s, m, &drive)) continue;
-        moves = moves || carriage_moves(&s, m);
+        stuck = stuck || (posture > 0 && !carriage_moves(&s, m)); /* posture 0 is special: all hinges straight */
         const laconic_status status = laconic_articulated_solve(x, NULL, &s, &bare, NULL, why);
         if (status != LACONIC_OK) return status;
         include_rate(m, &s, &bare, &drive);
     }
-    if (moves) return LACONIC_OK;
+    if (!stuck) return LACONIC_OK;
     return refuse(why, LACONIC_STEERED_TOO_OFTEN, (laconic_field)LACONIC_FIELD_OF_BODY_COUNT, 0,
                   (real)(m->row_count + 3 - m->column_count), R(0));
 }

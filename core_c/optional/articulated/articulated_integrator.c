@@ -55,13 +55,14 @@ laconic_status laconic_articulated_integrator_prepare(laconic_articulated_integr
     const laconic_status status = check_step(step_s, why);
     if (status != LACONIC_OK) return status;
     const bool is_explicit = method == LACONIC_ARTICULATED_RK4 || method == LACONIC_ARTICULATED_CIRCLE;
-    if (is_explicit && !(step_s * model->fastest_decay_per_s <= LARGEST_EXPLICIT_RATE))
+    const real rate = model->fastest_decay_per_s + model->fastest_swing_per_s;
+    if (is_explicit && !(step_s * rate <= LARGEST_EXPLICIT_RATE))
         return refuse(why, LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, step_s,
-                      LARGEST_EXPLICIT_RATE / model->fastest_decay_per_s);
+                      LARGEST_EXPLICIT_RATE / rate);
     fresh.method = (laconic_articulated_method)method;
     fresh.step_s = step_s;
     fresh.rate_per_step = R(1) / step_s;
-    fresh.parts = laconic_articulated_parts_for(step_s * model->fastest_decay_per_s);
+    fresh.parts = laconic_articulated_parts_for(step_s * rate);
     laconic_articulated_factors_of(fresh.factors, model, step_s);
     *integrator = fresh;
     return LACONIC_OK;

@@ -12,14 +12,17 @@
  *
  * The error of a symmetric step has even powers of h alone, so (4 · two half steps − one step)/3 is of fourth order, for η,
  * angles and means. The mean of η is η + κ d, κ = φ2/φ1: exact for decay alone, where the mean of both ends is wrong. Rows
- * left over hold on average over the base step, C(η + d/2) = 0, and are restored at the end.
+ * left over hold on average over the base step, C(η + d/2) = 0, and are restored at the end, which costs an order.
+ *
+ * Extrapolation would amplify a swing that the step does not resolve (by 5/3). Where a spring swings faster than the step
+ * the two half steps stand as they are: of second order, and stable at any stiffness.
  *
  * J follows from f itself, exactly, as f is quadratic: J e = (f(η + e) − f(η − e))/2. */
 #include "articulated_circle.h"
 
 #if LACONIC_MAX_BODIES > 0
 
-#define UNKNOWNS (2 * LACONIC_MAX_VELOCITIES)
+#define MOEBIUS_UNKNOWNS (2 * LACONIC_MAX_VELOCITIES)
 
 /* A motion within a step; `turn_rad` since the step's start. */
 typedef struct moebius_point {
@@ -118,7 +121,7 @@ static void jacobian_column(real *column, articulated_sweep *s, const laconic_ar
 }
 
 /* Solves a[n][n + 1] by elimination with pivots; false where it is singular. */
-static bool eliminate(real a[UNKNOWNS][UNKNOWNS + 1], real *x, int32_t n) {
+static bool eliminate_unknowns(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], real *x, int32_t n) {
     for (int32_t c = 0; c < n; c++) {
         int32_t p = c;
         for (int32_t r = c + 1; r < n; r++)
@@ -145,8 +148,8 @@ static bool eliminate(real a[UNKNOWNS][UNKNOWNS + 1], real *x, int32_t n) {
 }
 
 /* ¼h² K, K = Σ stiffness (ω_b − ω_p)(ω_b − ω_p)ᵀ, from the rates that each velocity alone gives a hinge. */
-static void add_springs(real a[UNKNOWNS][UNKNOWNS + 1], articulated_sweep *s, const laconic_articulated_model *m,
-                        const articulated_drive *drive, real h) {
+static void add_springs(real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], articulated_sweep *s,
+                        const laconic_articulated_model *m, const articulated_drive *drive, real h) {
     real rate[LACONIC_MAX_VELOCITIES][LACONIC_MAX_BODIES];
     articulated_drive still = *drive;
     bool springs = false;
@@ -172,7 +175,7 @@ static void add_springs(real a[UNKNOWNS][UNKNOWNS + 1], articulated_sweep *s, co
 static laconic_status velocity_step(real *d, articulated_sweep *s, const laconic_articulated_model *m,
                                     const laconic_articulated_factors *factors, const articulated_drive *drive,
                                     const moebius_point *p, real h, laconic_refusal *why) {
-    real a[UNKNOWNS][UNKNOWNS + 1], target[LACONIC_MAX_LEFT_ROWS], x[UNKNOWNS];
+    real a[MOEBIUS_UNKNOWNS][MOEBIUS_UNKNOWNS + 1], target[LACONIC_MAX_LEFT_ROWS], x[MOEBIUS_UNKNOWNS];
     int32_t kept[LACONIC_MAX_VELOCITIES], rows = 0;
     sweep_loads(s, m, drive);
     if (drive->rotates) laconic_articulated_add_world(s, m, drive, p->facing);
@@ -201,7 +204,7 @@ static laconic_status velocity_step(real *d, articulated_sweep *s, const laconic
         for (int32_t i = 0; i < k; i++) a[i][l] -= R(0.5) * h * column[i];
     }
     add_springs(a, s, m, drive, h);
-    if (!eliminate(a, x, n)) return refuse(why, LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0, h, R(0.5) * h);
+    if (!eliminate_unknowns(a, x, n)) return refuse(why, LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0, h, R(0.5) * h);
     for (int32_t i = 0; i < k; i++) d[i] = x[i];
     return LACONIC_OK;
 }
@@ -224,8 +227,8 @@ static laconic_status commanded_ready(articulated_sweep *s, const laconic_articu
 
 /* Means of all twists at the middle's angles; slope of X_0. */
 static void take_means(moebius_means *means, articulated_sweep *s, const laconic_articulated_model *m,
-                       const laconic_articulated_factors *factors, const articulated_drive *drive,
-                       const real *before, const real *d, real h) {
+                       const laconic_articulated_factors *factors, const articulated_drive *drive, const real *before,
+                       const real *d, real h) {
     real mean[LACONIC_MAX_VELOCITIES], slope[LACONIC_MAX_VELOCITIES];
     for (int32_t i = 0; i < m->dof; i++) {
         mean[i] = before[i] + factors->mean[i] * d[i];
@@ -246,7 +249,7 @@ static laconic_status base_step_of(moebius_point *p, moebius_means *means, const
     articulated_moment moment;
     const real half = R(0.5) * share;
     laconic_articulated_begin_moment(&moment, course, m);
-    const articulated_drive *drive = drive_at(&moment, course, m, from + half);
+    const articulated_drive *drive = commands_of(&moment, course, m, from + half);
     real d[LACONIC_MAX_VELOCITIES], before[LACONIC_MAX_VELOCITIES];
     laconic_status status = commanded_ready(&s, m, p, drive, why);
     if (status != LACONIC_OK) return status;
@@ -276,18 +279,19 @@ static void start_point(moebius_point *p, const laconic_articulated_model *m, co
     }
 }
 
-static real extrapolated_number(real twice, real once) { return twice + (twice - once) * (R(1) / R(3)); }
+static real extrapolated_number(real twice, real once, real share) { return twice + (twice - once) * share; }
 
 static void combine_points(articulated_increment *by, const laconic_articulated_model *m,
                            const laconic_articulated_state *state, const moebius_point *once,
-                           const moebius_point *twice, const moebius_means means[3]) {
+                           const moebius_point *twice, const moebius_means means[3], real share) {
     for (int32_t i = 0; i < m->dof; i++)
-        by->eta[i] = extrapolated_number(twice->eta[i] - state->eta[i].value, once->eta[i] - state->eta[i].value);
+        by->eta[i] =
+            extrapolated_number(twice->eta[i] - state->eta[i].value, once->eta[i] - state->eta[i].value, share);
     for (int32_t b = 0; b < m->body_count; b++)
-        by->turn_rad[b] = extrapolated_number(twice->turn_rad[b], once->turn_rad[b]);
+        by->turn_rad[b] = extrapolated_number(twice->turn_rad[b], once->turn_rad[b], share);
     for (int32_t b = 0; b <= m->body_count; b++) {
         const vector mean = scaled(R(0.5), plus(means[1].mean[b], means[2].mean[b]));
-        by->mean[b] = plus(mean, scaled(R(1) / R(3), minus(mean, means[0].mean[b])));
+        by->mean[b] = plus(mean, scaled(share, minus(mean, means[0].mean[b])));
     }
     by->bend = plus(scaled(R(1.5), minus(means[2].mean[0], means[1].mean[0])),
                     scaled(R(0.25), plus(means[1].slope, means[2].slope)));
@@ -308,9 +312,9 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
     if (status == LACONIC_OK) status = base_step_of(&twice, &means[1], m, &factors[1], course, from, half, why);
     if (status == LACONIC_OK) status = base_step_of(&twice, &means[2], m, &factors[1], course, from + half, half, why);
     if (status != LACONIC_OK) return status;
-    combine_points(&by, m, state, &once, &twice, means);
+    combine_points(&by, m, state, &once, &twice, means, h * m->fastest_swing_per_s > R(1) ? R(0) : R(1) / R(3));
     laconic_articulated_begin_moment(&moment, course, m);
-    const articulated_drive *end = drive_at(&moment, course, m, from + share);
+    const articulated_drive *end = commands_of(&moment, course, m, from + share);
     laconic_articulated_turn_coordinated(&by, m, state, end);
     status = laconic_articulated_accept(state, m, &by, h);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_STEP, 0, h, R(0));

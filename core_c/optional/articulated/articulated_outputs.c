@@ -27,8 +27,7 @@ static void body_poses(laconic_articulated_motion *motion, const laconic_articul
         const direction d = direction_of_heading(&facing[link->parent]);
         x[b] = motion->body_x_m[b - 1] = x[link->parent] + d.cosine * link->hinge.x - d.sine * link->hinge.y;
         y[b] = motion->body_y_m[b - 1] = y[link->parent] + d.sine * link->hinge.x + d.cosine * link->hinge.y;
-        facing[b].fraction =
-            (laconic_binary_angle)(facing[link->parent].fraction + state->hinge[b - 1].fraction);
+        facing[b].fraction = (laconic_binary_angle)(facing[link->parent].fraction + state->hinge[b - 1].fraction);
         motion->body_heading_rad[b - 1] = heading_wrapped(&facing[b]);
     }
 }

@@ -42,8 +42,8 @@ static void take_columns(laconic_articulated_model *m, const laconic_model *carr
 
 /* Coefficients of aᵀ A b in the six entries of A. */
 static laconic_form pair_of(vector a, vector b) {
-    const laconic_form pair = {a.x * b.x,         a.x * b.y + a.y * b.x, a.y * b.y, a.x * b.z + a.z * b.x,
-                               a.y * b.z + a.z * b.y, a.z * b.z};
+    const laconic_form pair = {
+        a.x * b.x, a.x * b.y + a.y * b.x, a.y * b.y, a.x * b.z + a.z * b.x, a.y * b.z + a.z * b.y, a.z * b.z};
     return pair;
 }
 
@@ -65,8 +65,8 @@ static void take_held(laconic_articulated_model *m) {
 
 static void take_carriage(laconic_articulated_model *m, const laconic_model *carriage) {
     const real spread = carriage->yaw_scale * carriage->wheel_radius_m;
-    const laconic_form inertia = {carriage->mass_kg, R(0), carriage->mass_kg,
-                                  R(0),              R(0), carriage->mass_kg * spread * spread};
+    const laconic_form inertia = {
+        carriage->mass_kg, R(0), carriage->mass_kg, R(0), R(0), carriage->mass_kg * spread * spread};
     m->mass_kg = carriage->mass_kg;
     m->com_x_m = carriage->com_x_m;
     m->com_y_m = carriage->com_y_m;
@@ -110,7 +110,8 @@ static real form_size(const laconic_form *f) {
 
 /* No constant, and no product of two, is beyond the range. */
 static bool all_usable(const laconic_articulated_model *m) {
-    real sum = form_size(&m->inertia) + form_size(&m->drag) + m->length_m + m->fastest_decay_per_s;
+    real sum =
+        form_size(&m->inertia) + form_size(&m->drag) + m->length_m + m->fastest_decay_per_s + m->fastest_swing_per_s;
     for (int k = 0; k < 3; k++) sum += size(m->column[k]) + m->decay_per_s[k];
     for (int32_t b = 0; b < m->body_count; b++) {
         const laconic_link *link = &m->link[b];
@@ -122,13 +123,26 @@ static bool all_usable(const laconic_articulated_model *m) {
     return fits_squared(sum);
 }
 
+/* A twist commands one motion: wheels must hold the carriage to it. Axle lines that a posture happens to join count. */
+static laconic_status check_held(const laconic_articulated_model *m, laconic_refusal *why) {
+    int32_t lines = 3 - m->column_count;
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        bool fixed = false;
+        for (int32_t i = 0; i < m->wheel_count; i++)
+            fixed = fixed || (m->wheel[i].body == b && square(m->wheel[i].axle) > R(0));
+        if (fixed && m->link[b - 1].motion == LACONIC_MOTION_COORDINATED) lines++;
+    }
+    if (!m->coordinated || lines >= 2) return LACONIC_OK;
+    return refuse(why, LACONIC_COORDINATED_TOO_FEW, (laconic_field)LACONIC_FIELD_OF_BODY_COUNT, 0, (real)lines, R(2));
+}
+
 static void count_velocities(laconic_articulated_model *m) {
     if (m->coordinated) m->carriage_dof = 1;
     m->dof = m->carriage_dof + m->own_count;
 }
 
-laconic_status laconic_articulated_prepare(laconic_articulated_model *model,
-                                           const laconic_articulated_vehicle *vehicle, laconic_refusal *why) {
+laconic_status laconic_articulated_prepare(laconic_articulated_model *model, const laconic_articulated_vehicle *vehicle,
+                                           laconic_refusal *why) {
     laconic_articulated_model m = ALL_ZERO;
     laconic_model carriage;
     laconic_status status = laconic_articulated_check(vehicle, why);
@@ -140,6 +154,7 @@ laconic_status laconic_articulated_prepare(laconic_articulated_model *model,
     laconic_articulated_wheels(&m, vehicle);
     add_carriage_wheels(&m);
     status = laconic_articulated_links(&m, vehicle, why);
+    if (status == LACONIC_OK) status = check_held(&m, why);
     if (status != LACONIC_OK) return status;
     count_velocities(&m);
     if (!all_usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));

@@ -74,8 +74,8 @@ typedef struct reaction_moment {
     articulated_sweep sweep;
     articulated_drive drive;
     real multiplier[LACONIC_MAX_LEFT_ROWS];
-    vector needed[BODIES];                   /* W_b                                                         */
-    vector held[LACONIC_MAX_WHEELS];         /* row of a wheel that holds the carriage, seen at S_0         */
+    vector needed[BODIES];           /* W_b                                                         */
+    vector held[LACONIC_MAX_WHEELS]; /* row of a wheel that holds the carriage, seen at S_0         */
 } reaction_moment;
 
 /* W_b of each body by itself. World forces come in by the difference that they make to the loads. */
@@ -84,8 +84,8 @@ static void needs_of_bodies(reaction_moment *r, const laconic_articulated_model 
     for (int32_t b = 0; b <= m->body_count; b++) {
         const laconic_link *link = b > 0 ? &m->link[b - 1] : NULL;
         const vector still = {R(0), R(0), m->mass_kg};
-        const vector x = r->rates.twist[b], given = plus(gyroscopic(b > 0 ? link->first_moment : still, x),
-                                                         r->drive.force[b]);
+        const vector x = r->rates.twist[b],
+                     given = plus(gyroscopic(b > 0 ? link->first_moment : still, x), r->drive.force[b]);
         const vector inert = form_times(b > 0 ? &link->inertia : &m->inertia, r->rates.twist_rate[b]);
         r->needed[b] = plus(minus(inert, given), form_times(b > 0 ? &link->drag : &m->drag, x));
         r->sweep.force[b] = none;
@@ -101,8 +101,8 @@ static void along_of_wheels(laconic_articulated_reactions *out, const reaction_m
     for (int32_t i = 0; i < m->wheel_count; i++) {
         const laconic_articulated_wheel *w = &m->wheel[i];
         const real speed = dot(w->roll, r->rates.twist[w->body]), gain = dot(w->roll, r->rates.twist_rate[w->body]);
-        const real torque = w->gain_Nm_per_V * input->base.voltage_V[i] - w->damping_Nms * speed +
-                            input->base.axle_torque_Nm[i];
+        const real torque =
+            w->gain_Nm_per_V * input->base.voltage_V[i] - w->damping_Nms * speed + input->base.axle_torque_Nm[i];
         out->wheel_torque_Nm[i] = torque;
         out->along_N[i] = (torque - w->inertia_kgm2 * gain) * w->inverse_arm_per_m;
         out->lateral_N[i] = out->brake_Nm[i] = R(0);
@@ -127,7 +127,7 @@ typedef struct holding_rows {
     bool brake[MAX_HOLDING];
 } holding_rows;
 
-static void hold(holding_rows *h, const laconic_articulated_model *m, vector row, int32_t wheel, bool brake) {
+static void add_holding(holding_rows *h, const laconic_articulated_model *m, vector row, int32_t wheel, bool brake) {
     row.z /= m->length_m;
     store(h->row[h->count], row);
     h->wheel[h->count] = wheel;
@@ -137,14 +137,14 @@ static void hold(holding_rows *h, const laconic_articulated_model *m, vector row
 static void hold_by_body(holding_rows *h, const laconic_articulated_model *m, int32_t b) {
     for (int32_t i = 0; i < m->wheel_count; i++) {
         if (m->wheel[i].body != b) continue;
-        if (square(m->wheel[i].axle) > R(0)) hold(h, m, m->wheel[i].axle, i, false);
-        if (m->wheel[i].locked) hold(h, m, m->wheel[i].pull, i, true);
+        if (square(m->wheel[i].axle) > R(0)) add_holding(h, m, m->wheel[i].axle, i, false);
+        if (m->wheel[i].locked) add_holding(h, m, m->wheel[i].pull, i, true);
     }
 }
 
 /* Shares a wrench among rows by least norm; returns what they do not deliver. */
-static vector share(laconic_articulated_reactions *out, const laconic_articulated_model *m, const holding_rows *h,
-                    vector wrench) {
+static vector share_among(laconic_articulated_reactions *out, const laconic_articulated_model *m, const holding_rows *h,
+                          vector wrench) {
     real solver[MAX_HOLDING][3];
     vector rest = vector_of(wrench.x, wrench.y, wrench.z / m->length_m);
     const vector wanted = rest;
@@ -179,11 +179,12 @@ static void balance_body(laconic_articulated_reactions *out, reaction_moment *r,
     holding_rows rows;
     rows.count = 0;
     real torque = R(0);
-    if (link->motion <= LACONIC_MOTION_OWN) torque = hinge_torque(link, &r->drive, r->sweep.rate[b - 1], r->sweep.angle_rad[b - 1], b);
+    if (link->motion <= LACONIC_MOTION_OWN)
+        torque = hinge_torque(link, &r->drive, r->sweep.rate[b - 1], r->sweep.angle_rad[b - 1], b);
     const vector delivered = wheels_deliver(r, m, b, torque);
     if (link->motion != LACONIC_MOTION_COORDINATED) {
         hold_by_body(&rows, m, b);
-        (void)share(out, m, &rows, delivered);
+        (void)share_among(out, m, &rows, delivered);
     }
     const vector left = minus(r->needed[b], delivered);
     if (link->motion >= LACONIC_MOTION_PRESCRIBED) torque = left.z;
@@ -208,9 +209,9 @@ static void balance_carriage(laconic_articulated_reactions *out, const reaction_
         const direction d = r->sweep.toward[b - 1];
         vector row = turned(d, m->wheel[i].axle.x, m->wheel[i].axle.y);
         row.z = m->link[b - 1].hinge.x * row.y - m->link[b - 1].hinge.y * row.x;
-        hold(&rows, m, row, i, false);
+        add_holding(&rows, m, row, i, false);
     }
-    const vector needed = r->needed[0], rest = share(out, m, &rows, needed);
+    const vector needed = r->needed[0], rest = share_among(out, m, &rows, needed);
     out->balance = magnitude(rest.x) + magnitude(rest.y) + magnitude(rest.z) / m->length_m;
 }
 
@@ -243,7 +244,7 @@ static void judge(laconic_articulated_reactions *out, const reaction_moment *r, 
         const real margin = m->friction_coefficient * normal_N[i] - reaction;
         if (i == 0 || !(margin >= out->no_slip_margin_N)) out->no_slip_margin_N = margin;
     }
-    out->balance = scale > R(0) ? out->balance / scale : R(0);
+    out->balance /= scale + LACONIC_EPSILON * R(LACONIC_GRAVITY_M_PER_S2) * m->mass_kg; /* at rest: of the weight */
 }
 
 laconic_status laconic_articulated_reactions_of(laconic_articulated_reactions *reactions,
@@ -253,8 +254,7 @@ laconic_status laconic_articulated_reactions_of(laconic_articulated_reactions *r
                                                 laconic_refusal *why) {
     laconic_articulated_reactions out = ALL_ZERO;
     reaction_moment r;
-    const laconic_status status =
-        moment_of(&r.rates, r.multiplier, &r.sweep, &r.drive, model, state, input, why);
+    const laconic_status status = moment_of(&r.rates, r.multiplier, &r.sweep, &r.drive, model, state, input, why);
     if (status != LACONIC_OK) return status;
     twist_rates(&r.rates, &r.sweep, model);
     needs_of_bodies(&r, model, state);

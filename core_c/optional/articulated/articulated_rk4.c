@@ -68,8 +68,8 @@ INLINE void turn_hinges(stage_sums *sums, articulated_sweep *s, const laconic_ar
                     start->angle_rad[b] + laconic_articulated_turn_from_to(start->toward[b], s->toward[b]);
             continue;
         }
-        sums->by.turn_rad[b] += stage_weight[g] * s->rate[b];
         if (link->motion == LACONIC_MOTION_COORDINATED) continue;
+        sums->by.turn_rad[b] += stage_weight[g] * s->rate[b];
         const real turn = ahead * s->rate[b];
         s->toward[b] = turned_by(start->toward[b], turn);
         s->angle_rad[b] = start->angle_rad[b] + turn;
@@ -90,8 +90,7 @@ INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconi
         sums->by.eta[i] += share * eta_rate[i];
         eta[i] = eta0[i] + ahead * eta_rate[i];
     }
-    for (int32_t b = 0; b <= m->body_count; b++)
-        sums->by.mean[b] = plus(sums->by.mean[b], scaled(share, s->twist[b]));
+    for (int32_t b = 0; b <= m->body_count; b++) sums->by.mean[b] = plus(sums->by.mean[b], scaled(share, s->twist[b]));
 }
 
 /* From sums with weights over 6 to what the step adds. Coordinated hinges are where the last stage has them. */
@@ -121,8 +120,8 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     articulated_sweep s, start;
     articulated_moment moment;
     const real h = share * course->step_s;
-    const direction heading = course->start.rotates || course->end.rotates ? direction_of_heading(&state->heading)
-                                                                           : direction_with(R(1), R(0));
+    const bool rotates = course->start.rotates || (!course->constant && course->end.rotates);
+    const direction heading = rotates ? direction_of_heading(&state->heading) : direction_with(R(1), R(0));
     direction facing = heading;
     real eta0[LACONIC_MAX_VELOCITIES], eta[LACONIC_MAX_VELOCITIES], rate[LACONIC_MAX_VELOCITIES];
     real correction[LACONIC_MAX_VELOCITIES];
@@ -137,7 +136,7 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     }
     for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i];
     for (int g = 0; g < 4; g++) {
-        const articulated_drive *drive = drive_at(&moment, course, m, from + share * stage_at[g]);
+        const articulated_drive *drive = commands_of(&moment, course, m, from + share * stage_at[g]);
         const real ahead = h * (g < 3 ? stage_at[g + 1] : R(0));
         laconic_status status = accelerations(rate, g == 0 ? correction : NULL, &s, m, eta, drive, facing, why);
         if (status == LACONIC_OK && g == 0) status = check_rates(&s, m, h, circle, largest, why);
@@ -175,8 +174,7 @@ laconic_status laconic_articulated_rk4(laconic_articulated_state *state, const l
                                    : plain_stages(&sums, state, m, course, from, share, largest, why);
     if (status != LACONIC_OK) return status;
     status = laconic_articulated_accept(state, m, &sums.by, share * course->step_s);
-    return status == LACONIC_OK ? status
-                                : refuse(why, status, LACONIC_FIELD_STEP, 0, share * course->step_s, R(0));
+    return status == LACONIC_OK ? status : refuse(why, status, LACONIC_FIELD_STEP, 0, share * course->step_s, R(0));
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* Solves mass · x = push + Cᵀκ with C x = target. mass = L diag(1/d) Lᵀ without roots; the rows z = L⁻¹Cᵀ are made
  * orthogonal in the metric d one after another (twice, for rounding), and each moves y = L⁻¹ push along itself until its
  * target holds. So a row that depends on earlier ones is found by what is left of it, relative to itself. */
-#include "articulated_tree.h"
+#include "articulated_equations.h"
 
 #if LACONIC_MAX_BODIES > 0
 
@@ -119,10 +119,14 @@ static laconic_status refuse_rows(const laconic_articulated_model *m, const kept
     return refuse(why, LACONIC_WHEELS_DISAGREE, LACONIC_FIELD_AXLE, m->row[row].wheel + 1, (real)other, R(0));
 }
 
+/* The mass of ζ is at least 1: its pivots are lost only where bodies are too far apart in mass. */
 static laconic_status refuse_massless(const laconic_articulated_model *m, int32_t velocity, laconic_refusal *why) {
     int32_t body = 0;
+    if (velocity < m->carriage_dof)
+        return refuse(why, LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, R(1) / SMALLEST_PIVOT, R(0));
     for (int32_t b = 1; b <= m->body_count; b++)
-        if (m->link[b - 1].motion == LACONIC_MOTION_OWN && m->carriage_dof + m->link[b - 1].column == velocity) body = b;
+        if (m->link[b - 1].motion == LACONIC_MOTION_OWN && m->carriage_dof + m->link[b - 1].column == velocity)
+            body = b;
     return refuse(why, LACONIC_MASSLESS_HINGE, (laconic_field)LACONIC_FIELD_OF_BODY_YAW_INERTIA, body, R(0), R(0));
 }
 

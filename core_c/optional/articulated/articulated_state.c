@@ -216,8 +216,8 @@ static pose_change displacement_of(const articulated_increment *by, real h) {
 /* Every angle and path of the step is finite and below what a heading can count. */
 static bool in_step_range(const laconic_articulated_state *state, const laconic_articulated_model *m,
                           const articulated_increment *by, const pose_change *moved, real h) {
-    real square_size = R(0), paths = magnitude(moved->along_m) + magnitude(moved->across_m) +
-                                     magnitude(moved->yaw_change_rad);
+    real square_size = R(0),
+         paths = magnitude(moved->along_m) + magnitude(moved->across_m) + magnitude(moved->yaw_change_rad);
     for (int32_t i = 0; i < m->dof; i++) {
         const real eta = state->eta[i].value + by->eta[i];
         square_size += eta * eta;

@@ -28,8 +28,7 @@ void laconic_articulated_ramp(laconic_articulated_input *start, laconic_articula
     for (int k = 0; k < LACONIC_MAX_BODIES; k++)
         start->hinge_acceleration_rad_per_s2[k] = end->hinge_acceleration_rad_per_s2[k] =
             (end->hinge_rate_rad_per_s[k] - start->hinge_rate_rad_per_s[k]) / step_s;
-    for (int k = 0; k < 3; k++)
-        start->twist_rate[k] = end->twist_rate[k] = (end->twist[k] - start->twist[k]) / step_s;
+    for (int k = 0; k < 3; k++) start->twist_rate[k] = end->twist_rate[k] = (end->twist[k] - start->twist[k]) / step_s;
 }
 
 static laconic_status check_hinge_numbers(const real *numbers, int32_t count, laconic_articulated_field field,
@@ -65,8 +64,8 @@ laconic_status laconic_articulated_input_check(const laconic_articulated_model *
 }
 
 /* Finite, or names the number. */
-static laconic_status check_drive(const articulated_drive *drive, const laconic_articulated_model *m,
-                                  const laconic_articulated_input *input, laconic_refusal *why) {
+static laconic_status check_drive_numbers(const articulated_drive *drive, const laconic_articulated_model *m,
+                                          const laconic_articulated_input *input, laconic_refusal *why) {
     if (laconic_articulated_drive_is_finite(drive, m)) return LACONIC_OK;
     const laconic_status status = laconic_articulated_input_check(m, input, why);
     return status != LACONIC_OK ? status : refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
@@ -80,10 +79,9 @@ static bool vectors_differ(vector a, vector b) { return differs(a.x, b.x) || dif
 
 static bool commands_jump(const laconic_articulated_state *state, const laconic_articulated_model *m,
                           const articulated_drive *drive) {
-    bool jump = m->coordinated && (vectors_differ(state->twist, drive->twist[0]) ||
-                                   vectors_differ(state->twist_rate, drive->twist[1]));
-    for (int32_t b = 0; b < m->body_count; b++)
-        jump = jump || differs(state->hinge_rate_rad_per_s[b], drive->rate[b]);
+    bool jump = m->coordinated &&
+                (vectors_differ(state->twist, drive->twist[0]) || vectors_differ(state->twist_rate, drive->twist[1]));
+    for (int32_t b = 0; b < m->body_count; b++) jump = jump || differs(state->hinge_rate_rad_per_s[b], drive->rate[b]);
     return jump;
 }
 
@@ -93,8 +91,7 @@ static laconic_status follow_jump(laconic_articulated_state *state, const laconi
     if (!commands_jump(state, m, drive)) return LACONIC_OK;
     laconic_articulated_drive_kept(&kept, m, state);
     if (m->coordinated) {
-        const laconic_status status =
-            laconic_articulated_check_twist(m, &kept, drive, SAME_DIRECTION, why);
+        const laconic_status status = laconic_articulated_check_twist(m, &kept, drive, SAME_DIRECTION, why);
         if (status != LACONIC_OK) return status;
     }
     return laconic_articulated_take_drive(state, m, drive, why);
@@ -105,7 +102,7 @@ laconic_status laconic_articulated_jump(const laconic_articulated_model *model, 
     laconic_articulated_state after = *state;
     articulated_drive drive;
     laconic_articulated_drive_of(&drive, model, input);
-    laconic_status status = check_drive(&drive, model, input, why);
+    laconic_status status = check_drive_numbers(&drive, model, input, why);
     if (status == LACONIC_OK) status = follow_jump(&after, model, &drive, why);
     if (status == LACONIC_OK) *state = after;
     return status;
@@ -121,7 +118,7 @@ static laconic_status take_course(articulated_course *course, const laconic_arti
     course->step_s = integrator->step_s;
     course->rate_per_step = integrator->rate_per_step;
     laconic_articulated_drive_of(&course->start, m, start);
-    laconic_status status = check_drive(&course->start, m, start, why);
+    laconic_status status = check_drive_numbers(&course->start, m, start, why);
     if (status != LACONIC_OK) return status;
     course->constant = start == end;
     for (int32_t b = 0; b < m->body_count; b++)
@@ -129,7 +126,7 @@ static laconic_status take_course(articulated_course *course, const laconic_arti
     if (course->start.turns) course->constant = false;
     if (course->constant) return LACONIC_OK;
     laconic_articulated_drive_of(&course->end, m, end);
-    status = check_drive(&course->end, m, end, why);
+    status = check_drive_numbers(&course->end, m, end, why);
     if (status != LACONIC_OK) return status;
     laconic_articulated_course_of(course, m);
     if (!m->coordinated) return LACONIC_OK;
@@ -140,8 +137,10 @@ static laconic_status by_method(laconic_articulated_state *state, const laconic_
                                 const laconic_articulated_integrator *integrator, const articulated_course *course,
                                 laconic_refusal *why) {
     switch (integrator->method) {
-    case LACONIC_ARTICULATED_RK4: return laconic_articulated_rk4(state, m, course, R(0), R(1), false, LARGEST_EXPLICIT_RATE, why);
-    case LACONIC_ARTICULATED_CIRCLE: return laconic_articulated_rk4(state, m, course, R(0), R(1), true, LARGEST_EXPLICIT_RATE, why);
+    case LACONIC_ARTICULATED_RK4:
+        return laconic_articulated_rk4(state, m, course, R(0), R(1), false, LARGEST_EXPLICIT_RATE, why);
+    case LACONIC_ARTICULATED_CIRCLE:
+        return laconic_articulated_rk4(state, m, course, R(0), R(1), true, LARGEST_EXPLICIT_RATE, why);
     case LACONIC_ARTICULATED_MOEBIUS_4:
         return laconic_articulated_moebius_4(state, m, integrator->factors, course, R(0), R(1), why);
     default: return laconic_articulated_auto(state, m, integrator, course, why);

@@ -3,7 +3,7 @@
 #ifndef LACONIC_ARTICULATED_STEP_H
 #define LACONIC_ARTICULATED_STEP_H
 
-#include "articulated_tree.h"
+#include "articulated_visit.h"
 
 #if LACONIC_MAX_BODIES > 0
 
@@ -45,8 +45,8 @@ void laconic_articulated_move_moment(articulated_moment *moment, const articulat
                                      const laconic_articulated_model *m, real at);
 
 /* The drive at a share of the step: that of the start where it is the same everywhere. */
-INLINE const articulated_drive *drive_at(articulated_moment *moment, const articulated_course *course,
-                                         const laconic_articulated_model *m, real at) {
+INLINE const articulated_drive *commands_of(articulated_moment *moment, const articulated_course *course,
+                                            const laconic_articulated_model *m, real at) {
     if (course->constant) return &course->start;
     if (moment->at != at) laconic_articulated_move_moment(moment, course, m, at);
     return &moment->drive;

@@ -22,8 +22,8 @@ static laconic_status check_against_wheels(const laconic_articulated_model *m, c
     for (int k = 0; k < 2; k++)
         for (int32_t i = 0; i < m->held_count; i++) {
             const vector t = drive->twist[k], row = m->held[i];
-            const real whole = (magnitude(row.x) + magnitude(row.y)) * (magnitude(t.x) + magnitude(t.y)) +
-                               magnitude(row.z * t.z);
+            const real whole =
+                (magnitude(row.x) + magnitude(row.y)) * (magnitude(t.x) + magnitude(t.y)) + magnitude(row.z * t.z);
             const real off = magnitude(dot(row, t));
             if (off > R(10) * LACONIC_RANK_TOLERANCE * whole)
                 return refuse(why, LACONIC_TWIST_AGAINST_WHEELS,
@@ -50,7 +50,7 @@ laconic_status laconic_articulated_check_twist(const laconic_articulated_model *
         const laconic_link *link = &m->link[b - 1];
         if (link->motion != LACONIC_MOTION_COORDINATED) continue;
         const direction w = twist_at_hinge(link, to->twist[0]);
-        if (!has_direction(w.cosine * w.cosine + w.sine * w.sine, to->twist[0]))
+        if (!(w.cosine * w.cosine + w.sine * w.sine > least_square_of(to->twist[0])))
             return laconic_articulated_refuse_twist(b, m, to, why);
         status = check_turn(link, b, from->twist[0], to->twist[0], largest_sine, why);
     }

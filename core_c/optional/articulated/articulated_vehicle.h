@@ -2,7 +2,7 @@
 #ifndef LACONIC_ARTICULATED_VEHICLE_H
 #define LACONIC_ARTICULATED_VEHICLE_H
 
-#include "articulated_tree.h"
+#include "articulated_equations.h"
 #include "geometry.h"
 
 #if LACONIC_MAX_BODIES > 0

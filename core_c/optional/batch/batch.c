@@ -4,7 +4,7 @@
 
 #define LARGEST_LANE_COUNT (1 << 28)
 #define ALIGNMENT 64
-#define LANES_WAYS (LANES_METHOD_COUNT + 6 * MOST_STRETCHES) /* in which lanes take a step */
+#define LANES_WAYS (LANES_METHOD_COUNT + 6 * MOST_STRETCHES + 1) /* in which lanes take a step */
 
 /* ------------------------------------------------------------------------------- widths -- */
 
@@ -46,7 +46,7 @@ static const laconic_method *const steppers[LANES_METHOD_COUNT] = {&laconic_rk4,
 static lanes_kind lanes_kind_of(const laconic_batch_kind *kind) {
     lanes_kind out = ALL_ZERO;
     int method = 0;
-    while (steppers[method] != kind->integrator.chosen) method++;
+    while (method < LANES_METHOD_COUNT && steppers[method] != kind->integrator.chosen) method++;
     out.method = (lanes_method)method;
     out.wheel_count = LACONIC_WHEELS(&kind->model);
     out.stiff = kind->integrator.stiff;
@@ -149,7 +149,8 @@ size_t laconic_batch_size(const laconic_batch_shape *shape) {
 /* Lanes of equal keys can share a block. */
 static int32_t way_of(const laconic_batch_kind *of) {
     const lanes_kind kind = lanes_kind_of(of);
-    const int32_t step = (int32_t)kind.method + 3 * (2 * kind.stretches - kind.has_rest);
+    const int32_t together = (int32_t)kind.method + 3 * (2 * kind.stretches - kind.has_rest);
+    const int32_t step = kind.method == LANES_NO_METHOD ? LANES_WAYS - 1 : together;
     return step + LANES_WAYS * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
 }
 

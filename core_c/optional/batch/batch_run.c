@@ -185,16 +185,18 @@ static uint32_t step_alone(void *context, laconic_batch_block *block, uint32_t w
     return refused;
 }
 
-/* Lanes of a batch without registers: a block for each. */
+static void run_one(walk *w, laconic_batch_block *block, int32_t k, uint64_t steps) {
+    const place p = place_of(block, w->batch, k);
+    if (block->stopped >> k & 1U) return;
+    if (refuses_alone(w, block, k, steps, 0)) block->stopped |= 1U << k;
+    *number_of(w->batch, ROW_X, block->lanes[k]) = *kept(&p, STATE_X);
+    *number_of(w->batch, ROW_Y, block->lanes[k]) = *kept(&p, STATE_Y);
+}
+
+/* Lanes of a batch without registers, or by a method that registers do not know. */
 static void run_one_by_one(walk *w, laconic_batch_block *blocks, int32_t count, uint64_t steps) {
-    for (int32_t i = 0; i < count; i++) {
-        const int32_t lane = blocks[i].lanes[0];
-        if (blocks[i].stopped) continue;
-        const place p = place_of(&blocks[i], w->batch, 0);
-        blocks[i].stopped = refuses_alone(w, &blocks[i], 0, steps, 0);
-        *number_of(w->batch, ROW_X, lane) = *kept(&p, STATE_X);
-        *number_of(w->batch, ROW_Y, lane) = *kept(&p, STATE_Y);
-    }
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t k = 0; k < blocks[i].count; k++) run_one(w, &blocks[i], k, steps);
 }
 
 /* How many blocks, from the first on, step by one method. */
@@ -212,7 +214,10 @@ static void run_blocks(walk *w, laconic_batch_block *blocks, int32_t count, uint
     }
     for (int32_t first = 0, same = 0; first < count; first += same) {
         same = of_one_method(&blocks[first], count - first);
-        w->batch->width->run[blocks[first].method](&blocks[first], same, steps, &alone);
+        if (blocks[first].method == LANES_NO_METHOD)
+            run_one_by_one(w, &blocks[first], same, steps);
+        else
+            w->batch->width->run[blocks[first].method](&blocks[first], same, steps, &alone);
     }
 }
 

@@ -68,6 +68,9 @@ typedef enum lanes_method {
     LANES_METHOD_COUNT
 } lanes_method;
 
+/* Of lanes that each step alone, by a method that registers do not know. */
+#define LANES_NO_METHOD LANES_METHOD_COUNT
+
 /* What all lanes of a block share. */
 typedef struct lanes_kind {
     lanes_method method;

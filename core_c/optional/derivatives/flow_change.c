@@ -1,4 +1,4 @@
-/* The exact-flow splitting, linearised (exact_flow.c). The free motion is a rotation of ζ by an angle that depends on
+/* The splitting with the exact free motion, linearised (exact_flow.c). The free motion is a rotation of ζ by an angle that depends on
  * ζ: its derivative is the rotation, plus what the change of the angle adds. */
 #include "base_change.h"
 

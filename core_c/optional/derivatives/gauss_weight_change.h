@@ -1,4 +1,4 @@
-/* How the weights of exponential-gauss-8 change with the damping, as functions of a symmetric matrix. */
+/* How the weights of a panel (exponential_gauss_8.h) change with the damping, as functions of a symmetric matrix. */
 #ifndef LACONIC_GAUSS_WEIGHT_CHANGE_H
 #define LACONIC_GAUSS_WEIGHT_CHANGE_H
 

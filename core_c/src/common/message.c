@@ -98,6 +98,19 @@ static size_t end_text(const writer *w) {
     return w->length;
 }
 
+#define METHOD_NAME(number, identifier, name, order, TAKES, KEEPS, NEEDS, title) LACONIC_METHOD_WITH_##NEEDS(name, )
+
+/* All in the order of the numbers, "or" before the last. */
+static void put_method_names(writer *w) {
+    static const char *const names[] = {LACONIC_METHODS(METHOD_NAME)};
+    const size_t last = sizeof names / sizeof names[0] - 1;
+    for (size_t i = 0; i < last; i++) {
+        put_text(w, names[i]);
+        put_text(w, i + 1 < last ? ", " : " or ");
+    }
+    put_text(w, names[last]);
+}
+
 static void put_explanation(writer *w, const laconic_refusal *why) {
     const char *c;
     for (c = explanation(why->status); *c != '\0'; c++) {
@@ -105,6 +118,8 @@ static void put_explanation(writer *w, const laconic_refusal *why) {
             put_number(w, why->value);
         else if (*c == '@')
             put_number(w, why->limit);
+        else if (*c == '$')
+            put_method_names(w);
         else
             put(w, *c);
     }

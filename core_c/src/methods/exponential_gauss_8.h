@@ -1,4 +1,4 @@
-/* What exponential-gauss-8 and its derivative share: the weights, and the panels of a step. */
+/* What the collocation at Gauss' points and its derivative share: the weights, and the panels of a step. */
 #ifndef LACONIC_EXPONENTIAL_GAUSS_8_H
 #define LACONIC_EXPONENTIAL_GAUSS_8_H
 
@@ -207,7 +207,7 @@ typedef struct panel_among {
 #endif
 
 /* Panels half as long, and twice as many decay times until something counts as died out, for an integrator that steps
- * by exponential-gauss-8, as auto does; others stay as they are. Two half steps have otherwise the same panels as the
+ * in panels, as auto does; others stay as they are. Two half steps have otherwise the same panels as the
  * whole step, or, where that has panels and they have none, longer ones, and do not show its error. */
 #if LACONIC_WITH_PREPARE
 void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model);

@@ -1,24 +1,16 @@
-/* The list of all methods. It links every method; firmware with one fixed method uses that one's name instead. */
+/* The table of all methods. It links every method; firmware with one fixed method uses that one's name instead. */
 #include "common.h"
 
-#define FIRST (1 - LACONIC_WITH_EXPONENTIAL_GAUSS) /* without that method there is no auto, which has the number 0 */
-
-static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
+/* The row of a method that this build leaves out is NULL, so that the others keep their numbers. */
+#define ROW_WITH_NOTHING(method) method
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-    &laconic_auto,
+#define ROW_WITH_EXPONENTIAL_GAUSS(method) method
 #else
-    NULL, /* auto steps by exponential-gauss-8 */
+#define ROW_WITH_EXPONENTIAL_GAUSS(method) NULL
 #endif
-    &laconic_rk4,
-    &laconic_exponential_kahan,
-    &laconic_exponential_kahan_4,
-    &laconic_exact_flow,
-    &laconic_exact_flow_4,
-    &laconic_taylor_8,
-#if LACONIC_WITH_EXPONENTIAL_GAUSS
-    &laconic_exponential_gauss_8,
-#endif
-};
+#define ROW(number, identifier, name, order, TAKES, KEEPS, NEEDS, title) ROW_WITH_##NEEDS(&laconic_##identifier),
+
+static const laconic_method *const methods[] = {LACONIC_METHODS(ROW)};
 
 static bool same_text(const char *a, const char *b) {
     for (; *a != '\0' && *a == *b; a++) b++;
@@ -30,7 +22,7 @@ const laconic_method *laconic_method_by_number(int32_t number) {
 }
 
 const laconic_method *laconic_method_by_name(const char *name) {
-    for (int32_t i = FIRST; i < LACONIC_METHOD_COUNT; i++)
-        if (same_text(methods[i]->name, name)) return methods[i];
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
+        if (methods[i] != NULL && same_text(methods[i]->name, name)) return methods[i];
     return NULL;
 }

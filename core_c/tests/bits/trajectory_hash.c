@@ -1,5 +1,5 @@
 /* Prints numbers that depend on every bit of many trajectories: every method, roller and fixed wheels, slow and fast
- * damping, every input. The first line is of the methods from rk4 to taylor-8, which every build has; each later method
+ * damping, every input. The first line is of the methods 1 to 6, which every build has; each later method
  * has a line of its own, so that a new one leaves the lines of the others as they are; auto steps by these. Builds of
  * the core that differ in compiler, optimisation or processor must print the same (same_bits.py compares them). */
 #include <inttypes.h>
@@ -11,7 +11,7 @@
 #ifndef STEPS
 #define STEPS 4000
 #endif
-#define FIRST_OF_ALL 1 /* rk4 */
+#define FIRST_OF_ALL 1
 #define FIRST_WITH_A_LINE 7
 
 #ifdef LACONIC_SINGLE

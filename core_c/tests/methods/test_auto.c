@@ -15,14 +15,14 @@ static void assert_same_steps(const laconic_method *method, const laconic_model 
     TEST_ASSERT_EQUAL_MEMORY(&b, &a, sizeof a);
 }
 
-static void takes_the_very_steps_of_exponential_gauss_8_whatever_the_damping(void) {
+static void takes_the_very_steps_of_the_eighth_order_whatever_the_damping(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = every_input();
     const double step_s[3] = {0.0001, 0.01, 0.4};
     for (int k = 0; k < 3; k++) {
         const laconic_integrator in = integrator_of(&laconic_auto, &m, step_s[k]);
         TEST_ASSERT_EQUAL_PTR(&laconic_auto, in.method);
-        TEST_ASSERT_EQUAL_STRING("exponential-gauss-8", in.chosen->name);
+        TEST_ASSERT_EQUAL_STRING(laconic_exponential_gauss_8.name, in.chosen->name);
         assert_same_steps(&laconic_exponential_gauss_8, &m, moving(&m, 1, 2, 3), &input, step_s[k], 5);
     }
 }
@@ -31,8 +31,8 @@ static void takes_the_very_steps_of_exponential_gauss_8_whatever_the_damping(voi
 static void either_choice_tells_its_name_and_order(void) {
     const laconic_method *either[] = {&laconic_auto_slow, &laconic_auto_fast};
     for (int k = 0; k < 2; k++) {
-        TEST_ASSERT_EQUAL_STRING("exponential-gauss-8", either[k]->name);
-        TEST_ASSERT_EQUAL_INT32(8, either[k]->order);
+        TEST_ASSERT_EQUAL_STRING(laconic_exponential_gauss_8.name, either[k]->name);
+        TEST_ASSERT_EQUAL_INT32(laconic_exponential_gauss_8.order, either[k]->order);
     }
 }
 
@@ -67,7 +67,7 @@ static void is_of_eighth_order_under_everything_that_can_act(void) {
 
 /* -------------------------------------------------------------------- steps that it refuses -- */
 
-/* Those of a vehicle that yaws by far more than exponential-gauss-8 takes. */
+/* Those of a vehicle that yaws by far more than the method of eighth order takes. */
 static void a_step_beyond_the_gyroscopic_limit_is_taken_by_exact_flow_4_or_kahan(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = every_input();
@@ -113,7 +113,7 @@ static void what_exact_flow_cannot_take_is_refused_while_damping_is_fast(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(takes_the_very_steps_of_exponential_gauss_8_whatever_the_damping);
+    RUN_TEST(takes_the_very_steps_of_the_eighth_order_whatever_the_damping);
     RUN_TEST(either_choice_tells_its_name_and_order);
     RUN_TEST(free_motion_keeps_its_energy_to_rounding);
     RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion);

@@ -109,14 +109,6 @@ static bool is_taken(const given *g, laconic_plant *plant, const laconic_method 
     return laconic_plant_run(plant, &g->input, 1, NULL) == LACONIC_OK;
 }
 
-static const laconic_method *method_named(const char *name) {
-    for (int32_t k = 0; k < LACONIC_METHOD_COUNT; k++) {
-        const laconic_method *method = laconic_method_by_number(k);
-        if (method != NULL && strcmp(method->name, name) == 0) return method;
-    }
-    return NULL;
-}
-
 static laconic_plant plant;
 
 static void every_method_takes_the_step_that_its_derivation_states(void) {
@@ -125,7 +117,7 @@ static void every_method_takes_the_step_that_its_derivation_states(void) {
         const given g = read_case(number);
         for (int k = 0; k < EXACT_METHODS; k++) {
             const double *expected = exact_found[number][k];
-            const laconic_method *method = method_named(exact_method[k]);
+            const laconic_method *method = laconic_method_by_name(exact_method[k]);
             TEST_ASSERT_NOT_NULL(method);
             const bool is_refused = expected[0] >= REFUSED;
             TEST_ASSERT_EQUAL(!is_refused, is_taken(&g, &plant, method));

@@ -1,4 +1,4 @@
-/* Tests of the panels of exponential-gauss-8: how many, how long, and those of an integrator of half steps. */
+/* Tests of the panels of a step with fast damping: how many, how long, and those of an integrator of half steps. */
 #include "exponential_gauss_8.h"
 
 #include "methods.h"
@@ -90,11 +90,13 @@ static void there_are_no_more_stretches_than_the_most(void) {
     ASSERT_NEAR(ROUNDING, 1, end_of(MOST_STRETCHES) * REAL(PARTS) * in.first_share);
 }
 
-/* Those that do not step by exponential-gauss-8: nothing of them changes. */
+/* Nothing changes in an integrator of a method without panels. */
 static void panels_of_other_methods_are_not_halved(void) {
     const laconic_model m = damped(REAL(1), REAL(2), REAL(0.5));
-    for (int32_t i = 1; i < LACONIC_METHOD_COUNT - 1; i++) {
-        const laconic_integrator before = integrator_of(laconic_method_by_number(i), &m, 1);
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_method *method = laconic_method_by_number(i);
+        if (method == &laconic_auto || method == &laconic_exponential_gauss_8) continue;
+        const laconic_integrator before = integrator_of(method, &m, 1);
         laconic_integrator in = before;
         laconic_halve_panels(&in, &m);
         TEST_ASSERT_EQUAL_MEMORY(&before, &in, sizeof in);

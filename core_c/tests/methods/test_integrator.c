@@ -53,7 +53,7 @@ static void a_good_step_is_kept_with_its_method(void) {
     TEST_ASSERT_EQUAL_PTR(&laconic_rk4, in.chosen);
 }
 
-/* Below h·r = 0.3 auto goes on with exact-flow-4 where it must, from there on with exponential-kahan-4. */
+/* Below h·r = 0.3 auto goes on with a splitting where it must, from there on with an exponential method. */
 static void damping_is_fast_from_its_border_on(void) {
     const laconic_real border = REAL(0.3), below = border * (1 - LACONIC_EPSILON);
     laconic_model m;

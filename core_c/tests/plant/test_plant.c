@@ -62,7 +62,7 @@ static void more_wheels_than_there_is_room_for_are_refused_before_any_of_them_is
 static void a_refused_step_stops_the_run_after_what_was_taken(void) {
     laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.1);
     laconic_input input = no_input();
-    input.body_moment_Nm = REAL(10); /* yaws faster and faster until the step is beyond rk4's gyroscopic limit */
+    input.body_moment_Nm = REAL(10); /* yaws faster and faster until the step is beyond the gyroscopic limit */
     ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
                    laconic_plant_run(&plant, &input, 100000, &why), why);
     TEST_ASSERT_TRUE(plant.steps > 0 && plant.steps < 100000);

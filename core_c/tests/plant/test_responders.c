@@ -1,7 +1,7 @@
 /* Tests of what answers directions through a step of each method: it reads no number that it has not set. What the
  * answers are, test_step_derivatives.c compares with differences. */
 #include "step_chain.h"
-#include "methods.h"
+#include "derived.h"
 #include "stack.h"
 
 /* A step, with and without a part of b that rotates, and two directions: one changes the model, too. */
@@ -56,7 +56,7 @@ static answers answered_over(const question *q, uint8_t byte) {
 
 static void what_lay_on_the_stack_changes_no_answer(void) {
     static const double step_s[3] = {0.01, 0.2, 0.8};
-    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+    FOR_EACH_DERIVED (number)
         for (int k = 0; k < 6; k++) {
             question q;
             const char *const name = laconic_method_by_number(number)->name;
@@ -95,7 +95,7 @@ static void columns_are_found_in_a_room_of_their_own(void) {
 /* With a change of the model or without, first or second. */
 static void a_direction_beside_another_is_answered_as_alone(void) {
     static const double step_s[2] = {0.01, 0.8};
-    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+    FOR_EACH_DERIVED (number)
         for (int k = 0; k < 8; k++) {
             const char *const name = laconic_method_by_number(number)->name;
             question q;

@@ -45,7 +45,7 @@ static void an_identity_asks_for_methods_alone(void) {
     node.config.method = notes_who_is_asked_for;
     laconic_node_pack(&node, LACONIC_WIRE_IDENTITY, data);
     TEST_ASSERT_EQUAL_INT32(0, lowest_asked);
-    TEST_ASSERT_EQUAL_INT32(LACONIC_METHOD_COUNT - 1, highest_asked);
+    TEST_ASSERT_EQUAL_INT32((LACONIC_METHOD_COUNT < 8 ? LACONIC_METHOD_COUNT : 8) - 1, highest_asked); /* of 8 bits */
 }
 
 /* As a bit of the count that changes would make it; the frame before had the speeds of all wheels. */

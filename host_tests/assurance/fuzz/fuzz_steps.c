@@ -151,7 +151,7 @@ static bool is_usual(const laconic_start *motion, const laconic_input *held, int
     return is && size_of(held->world_force_point_m[0]) < 2;
 }
 
-/* In long steps, in which an input turns the vehicle far, the rounds of exponential-gauss-8 end before their solution;
+/* In long steps, in which an input turns the vehicle far, the rounds of a collocation end before their solution;
  * from rest they may settle where those beside it diverge, and differences show nothing (laconic/derivatives.h). */
 static bool ends_before_its_solution(const laconic_plant *plant) {
     return strcmp(plant->integrator.chosen->name, laconic_exponential_gauss_8.name) == 0 &&

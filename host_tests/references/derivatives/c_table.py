@@ -18,6 +18,7 @@ from mpmath import mp, mpf
 from laconic.core import load
 from laconic.core.binding import Core
 from laconic.errors import Refused
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.verify.exact.exact_gauss import panels_of
 from laconic.tools.verify.exact.exact_model import Vector, exact_model, numbers_of
 from laconic.tools.verify.exact.exact_steps import exact_step
@@ -50,7 +51,7 @@ def cases() -> Iterator[Trial]:
     for place, kind in enumerate(KINDS):
         for number in (2 * place, 2 * place + 1):
             damped, fast = DAMPED[number % len(DAMPED)], SPEEDS[(number + number // 3) % len(SPEEDS)]
-            drawn = made_up(random, kind, "rk4")
+            drawn = made_up(random, kind, EXPLICIT)
             table = rounded(drawn.table)
             step_s = rounded(float(10 ** random.uniform(-2.3, -1.3)))
             largest = max((float(r) for r in exact_model(numbers_of(table)).decay), default=0.0)

@@ -6,10 +6,13 @@ import base64
 import gzip
 import io
 import json
+import re
 import shutil
 import tarfile
 from pathlib import Path
 from typing import Any
+
+from laconic.scene.methods import METHODS
 
 NPM_TIME = 499162500  # 1985-10-26, which npm, too, gives every file, so that archives do not differ by their times
 
@@ -20,6 +23,8 @@ def make_package(sources: Path, wasm: Path, version: str, out: Path, archive: Pa
     (out / "src").mkdir(parents=True)
     for path in sorted((sources / "src").iterdir()):
         shutil.copyfile(path, out / "src" / path.name)
+    types = out / "src/index.d.ts"
+    types.write_text(with_names(types.read_text(encoding="utf-8")), encoding="utf-8")
     text = base64.b64encode(wasm.read_bytes()).decode("ascii")
     module = f'// The core, compiled to WebAssembly, as base64.\nexport const wasm =\n  "{text}";\n'
     (out / "src/wasm.js").write_text(module, encoding="ascii")
@@ -27,6 +32,15 @@ def make_package(sources: Path, wasm: Path, version: str, out: Path, archive: Pa
     shutil.copyfile(sources / "README.md", out / "README.md")
     shutil.copyfile(sources.parents[1] / "LICENSE", out / "LICENSE")
     archive.write_bytes(packed(out))
+
+
+def with_names(types: str) -> str:
+    """The types, which take no method but the core's."""
+    names = " | ".join(f'"{name}"' for name in METHODS)
+    text, count = re.subn(r"(export type MethodName = )string;", rf"\1{names};", types)
+    if count != 1:
+        raise ValueError(f"index.d.ts: `export type MethodName = string;` occurs {count} times, not once")
+    return text
 
 
 def manifest_of(sources: Path, version: str) -> dict[str, Any]:

@@ -42,6 +42,21 @@ STATUSES = {
     "STEP_UNSOLVED": "the contact forces of the step were not found",
     "STRAIGHT_ONLY": "fixed wheels on parallel axle lines need friction of the ground",
     "ZERO": "a number that may be above or below 0 is 0",
+    "TOO_MANY_BODIES": "more bodies on hinges than this build takes",
+    "BODY_UNKNOWN": "no such body, or a parent after its body",
+    "HINGE_NOT_SET": "a hinge's kind is 0",
+    "HINGE_KIND_UNKNOWN": "no such kind of hinge",
+    "COORDINATED_ON_BODY": "a coordinated hinge is not on the carriage",
+    "COORDINATED_WHEEL": "a coordinated wheel does not roll along its body",
+    "COORDINATED_TOO_FEW": "too few wheels hold the carriage to the twist",
+    "MASSLESS_HINGE": "a hinge turns without inertia",
+    "STEERED_TOO_OFTEN": "freely steered wheels hold the carriage",
+    "FRICTION_WITH_HINGES": "friction does not act on vehicles with hinges",
+    "TWIST_ZERO": "the twist gives a wheel no direction",
+    "TWIST_JUMPS": "the twist turns a wheel too far at once",
+    "TWIST_AGAINST_WHEELS": "the twist makes fixed wheels slide",
+    "WHEELS_DISAGREE": "wheels ask for different turning centres",
+    "STEP_BEYOND_TRAIL_LIMIT": "a caster is too fast for an explicit step",
     "UNKNOWN_COMMAND": "no such CONTROL.command", "WRONG_STATE": "not in this state",
     "CHECKSUM_MISMATCH": "COMMIT: frames were lost or another number was sent",
     "INPUT_INCOMPLETE": "raw inputs or half a double are missing", "PARAMETER_UNKNOWN": "no such field or item",
@@ -143,7 +158,7 @@ def examples(client: reference.Client) -> str:
 def page() -> str:
     """The whole text."""
     client = reference.Client(bus=None)
-    database = load(HERE.parent / "laconic.dbc")
+    database = load(PAGE.parents[1] / "firmware_stub" / "laconic.dbc")
     messages = sorted(database.messages, key=lambda message: message.frame_id)
     result, fields = database.get_message_by_name("RESULT"), field_choices(database)
     status = choices(result.get_signal_by_name("status"))

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import LONGEST_NAME, BadInput, nearest_of, shown
 
 PACKAGE_DIR = Path(__file__).resolve().parents[1]
 WHEEL_DIR = PACKAGE_DIR / "_built"
@@ -84,7 +84,7 @@ def as_path(name: str, given: Any) -> Path:
     except TypeError:
         path = Path("\0")
     if "\0" in str(path) or given == "":
-        raise BadInput(f"{name}: {given!r} is no path; give one as text or as a Path")
+        raise BadInput(f"{name}: {shown(given)} is no path; give one as text or as a Path")
     return path
 
 
@@ -114,4 +114,5 @@ def scene_path(given: str | Path) -> Path:
     if path := named_scene(given):
         return path
     remedy = nearest_of(Path(given).stem, scene_names()) if scene_names() else "give the path of a scene file"
-    raise BadInput(f"{given}: no such scene file; {remedy}")
+    name = str(given) if len(str(given)) <= LONGEST_NAME else shown(str(given))
+    raise BadInput(f"{name}: no such scene file; {remedy}")

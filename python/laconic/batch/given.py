@@ -8,6 +8,7 @@ import numpy as np
 
 from laconic.core import Core, Vehicle
 from laconic.core.given import shown, whole_number
+from laconic.core.given_array import any_array
 from laconic.errors import BadInput
 
 MOST_LANES = 2**28
@@ -53,11 +54,9 @@ def kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
         if kinds == 1:
             found = np.zeros(lane_count("lanes", 1 if lanes is None else lanes), np.int32)
     else:
-        try:
-            found = np.asarray(kind_of)
-        except ValueError:
-            raise BadInput(f"kind_of: {shown(kind_of)} is no row of numbers; give one whole number for each "
-                           "lane") from None
+        found = any_array(kind_of)
+        if found.dtype == object:
+            raise BadInput(f"kind_of: {shown(kind_of)} is no row of numbers; give one whole number for each lane")
         if found.ndim != 1 or found.dtype.kind not in "iu" or (lanes is not None and len(found) != lanes):
             raise BadInput(f"kind_of: has the shape {found.shape} and numbers of {found.dtype}; give one whole number "
                            "for each lane")

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -17,8 +18,9 @@ import numpy as np
 
 from laconic.batch.given import check_steppable, core_of, kinds_of, kinds_of_lanes, thread_count
 from laconic.batch.memory import Rows, aligned_memory
-from laconic.batch.population import Kinds, items_of
+from laconic.batch.population import Kinds, items_of, zeros
 from laconic.core import Vehicle
+from laconic.core.copies import OwnMemory, build_of, packed, unpacked
 from laconic.core.given import c_object, finite_number, number, shown, step_count, whole_number
 from laconic.core.given_array import fill, real_array
 from laconic.errors import BadInput, Refused
@@ -27,10 +29,10 @@ MOST_AT_ONCE = 2**24  # steps of all lanes in one call, a tenth of a second or t
 FEWEST_AT_ONCE = 256  # of each: a call reads what a kind is made of
 ONE = 1  # the usual number of threads
 INPUTS = ("voltage_V", "axle_torque_Nm", "body_force_N", "body_moment_Nm", "world_force_N", "world_force_point_m")
-PRIVATE = ("_pool", "_is_observed")
+PRIVATE = ("_pool", "_pool_process", "_is_observed")
 
 
-class Batch:
+class Batch(OwnMemory):
     """Vehicles side by side, each with the bits and the refusals that `Plant.run` would give it alone.
 
     `vehicles`: one for all lanes, or several kinds of one scalar type; then `kind_of` has for each lane the index of
@@ -40,7 +42,7 @@ class Batch:
 
     Inputs and outputs are views of the batch's own memory, nothing is copied: inputs may be written in place.
     Raises BadInput for what does not fit and for a vehicle with friction or a drive, which a batch does not step;
-    Refused as `Vehicle.plant` does.
+    Refused as `Vehicle.plant` does. A copy, or a batch from a pickle, has memory of its own and the same bits.
     """
 
     voltage_V: np.ndarray             # (N, lanes)  input; N wheels of the vehicle that has most  # noqa: N815
@@ -76,7 +78,7 @@ class Batch:
         made = cls.__new__(cls)
         made.core, made._kind_of = kinds.core, np.arange(len(kinds.kinds), dtype=np.int32)
         made.lane_count, made.step_s = len(kinds.kinds), kinds.step_s
-        made._kinds = items_of(kinds.core, "laconic_batch_kind", kinds.kinds)
+        made._kinds, made._has_own_kinds = items_of(kinds.core, "laconic_batch_kind", kinds.kinds), True
         made._place(kinds.wheel_count, 0)
         made._is_placed = True
         return made
@@ -114,6 +116,7 @@ class Batch:
         self.status, self.missed = rows.of_lanes(self.c.status, np.int32), rows.of_lanes(self.c.missed, np.uint64)
         self._is_observed = False
         self._pool: ThreadPoolExecutor | None = None
+        self._pool_process = 0
         self._blocks, self._run_blocks = int(self.c.block_count), lib.laconic_batch_run
         self._at_once = max(FEWEST_AT_ONCE, MOST_AT_ONCE // self.lane_count)
 
@@ -121,6 +124,43 @@ class Batch:
     def width_bytes(self) -> int:
         """Of the registers that step the lanes; 1: one by one."""
         return int(self.c.shape.width_bytes)
+
+    # ---- copies
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What another batch of the same lanes needs, also on a processor with other registers."""
+        kind, own = "laconic_batch_kind", self.core.ffi.buffer(self._kinds, self.core.ffi.sizeof(self._kinds))
+        states = zeros(self.core, "laconic_state", self.lane_count)
+        items = items_of(self.core, "laconic_state", states)
+        for lane in range(self.lane_count):
+            self.core.lib.laconic_batch_store(self.c, lane, items + lane)
+        return {"core": self.core, "kind_of": self._kind_of, "kinds": packed(self.core, kind, bytes(own)),
+                "kind_count": len(self._kinds), "build": build_of(self.core), "step_s": self.step_s,
+                "wheel_count": int(self.c.shape.wheel_count), "width_bytes": self.width_bytes,
+                "has_own_kinds": self._has_own_kinds, "states": states,
+                "rows": {name: np.array(self.__dict__[name]) for name in (*INPUTS, "status", "missed")}}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Places the lanes anew and loads their states, inputs and refusals."""
+        core = self.core = state["core"]
+        kind, ffi = "laconic_batch_kind", core.ffi
+        self._kind_of, self.lane_count, self.step_s = state["kind_of"], len(state["kind_of"]), state["step_s"]
+        self._has_own_kinds, self._kinds = state["has_own_kinds"], ffi.new(f"{kind}[]", state["kind_count"])
+        data, distances = state["kinds"]
+        data = unpacked(core, kind, data, distances, state["build"])
+        ffi.memmove(self._kinds, data, len(data))
+        width = state["width_bytes"]
+        self._place(state["wheel_count"], width if core.lib.laconic_batch_width(width) else 0)
+        items = items_of(core, "laconic_state", state["states"])
+        for lane in range(self.lane_count):
+            core.lib.laconic_batch_load(self.c, lane, items + lane)
+        for name, row in state["rows"].items():
+            target = self.__dict__[name]
+            is_read_only = not target.flags.writeable
+            target.flags.writeable = True
+            target[...] = row
+            target.flags.writeable = not is_read_only
+        self._is_placed = True
 
     # ---- motion
 
@@ -213,11 +253,16 @@ class Batch:
         threads, blocks, self._is_observed = thread_count(threads), int(self.c.block_count), False
         if (threads := min(threads, blocks)) <= 1:
             return work(0, blocks)
-        if self._pool is None or self._pool._max_workers < threads:
-            self._pool = ThreadPoolExecutor(threads, "laconic-batch")
+        pool = self._pool_of(threads)
         edges = [blocks * part // threads for part in range(threads + 1)]
-        jobs = [self._pool.submit(work, first, end - first) for first, end in zip(edges, edges[1:], strict=False)]
+        jobs = [pool.submit(work, first, end - first) for first, end in zip(edges, edges[1:], strict=False)]
         return sum(job.result() for job in jobs)
+
+    def _pool_of(self, threads: int) -> ThreadPoolExecutor:
+        """Threads of this process: os.fork() takes the pool along, and its threads not."""
+        if self._pool is None or self._pool._max_workers < threads or self._pool_process != os.getpid():
+            self._pool, self._pool_process = ThreadPoolExecutor(threads, "laconic-batch"), os.getpid()
+        return self._pool
 
     # ---- outputs
 

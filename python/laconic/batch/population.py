@@ -14,9 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import build_of, packed, unpacked
+
 if TYPE_CHECKING:
     from laconic.batch.lanes import Batch
     from laconic.core import Core
+
+KIND = "laconic_batch_kind"
 
 
 @cache
@@ -76,6 +80,18 @@ class Kinds:
             items_of(core, "laconic_vehicle", vehicles), items_of(core, "laconic_motor", motors), len(vehicles),
             core.method(method), step_s)
         return cls(core, kinds, status, int(vehicles["wheel_count"].max()), step_s)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """By their bytes, in which another process finds its own methods."""
+        bare = packed(self.core, KIND, self.kinds.tobytes())
+        return Kinds.of_bytes, (self.core, *bare, build_of(self.core), self.status, self.wheel_count, self.step_s)
+
+    @classmethod
+    def of_bytes(cls, core: Core, data: bytes, distances: tuple[int, ...], build: str, status: np.ndarray,
+                 wheel_count: int, step_s: float) -> Kinds:
+        """Those that were pickled."""
+        whole = bytearray(unpacked(core, KIND, data, distances, build))
+        return cls(core, np.frombuffer(whole, struct_dtype(core, KIND)), status, wheel_count, step_s)
 
     def usable(self) -> Kinds:
         """Those that were not refused."""

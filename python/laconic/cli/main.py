@@ -142,13 +142,8 @@ def unexpected(error: Exception) -> LaconicError:
     if isinstance(error, ModuleNotFoundError):
         return missing_module(error)
     last = traceback.extract_tb(error.__traceback__)[-1]
-    return BadInput(f"unexpected {_kind(error)}: {error} ({Path(last.filename).name}:{last.lineno}); "
-                    "LACONIC_TRACEBACK=1 in the environment shows more, for a report of the fault")
-
-
-def _kind(error: Exception) -> str:
-    kind = type(error)
-    return kind.__name__ if kind.__module__ == "builtins" else f"{kind.__module__}.{kind.__qualname__}"
+    return BadInput(f"unexpected fault of the program ({Path(last.filename).name}:{last.lineno}); LACONIC_TRACEBACK=1 "
+                    "in the environment shows more, for a report of it")
 
 
 def fail(message: str, status: int) -> int:

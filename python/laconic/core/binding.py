@@ -21,10 +21,12 @@ import numpy as np
 from cffi import FFI
 
 from laconic.base.paths import built, library
+from laconic.core.copies import register
 from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, check_there, items, number, numbers, one_of, several, table
 from laconic.core.inputs import input_fields, row_of, slots_of
 from laconic.core.plant import Plant
+from laconic.core.spelling import wheel_in_core_terms
 from laconic.errors import BadInput, Refused
 
 REALS = ("double", "single")
@@ -55,7 +57,9 @@ def load(real: str = "double") -> Core:
 def _loaded(real: str) -> Core:
     ffi = FFI()
     ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text(encoding="utf-8"))
-    return Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
+    core = Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
+    register(core)
+    return core
 
 
 class Core:
@@ -76,9 +80,12 @@ class Core:
         self.input_fields = input_fields(self)
         self.input_length = ffi.sizeof("laconic_input") // self.dtype.itemsize
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """There is one core of each scalar type in a process."""
+        return load, (self.real,)
+
     def _method_names(self) -> tuple[str, ...]:
-        numbers = range(64)
-        methods = (self.lib.laconic_method_by_number(n) for n in numbers)
+        methods = (self.lib.laconic_method_by_number(n) for n in range(self.lib.LACONIC_METHOD_COUNT))
         return tuple(self.text(m.name) for m in methods if m != self.ffi.NULL)
 
     def fields_of(self, table: str) -> list[Field]:
@@ -117,7 +124,7 @@ class Core:
     # ---- vehicle and model
 
     def vehicle(self, data: Mapping[str, Any]) -> Any:
-        """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted.
+        """A laconic_vehicle from a mapping with the keys of `[vehicle]`, spelled as in a scene; `motor` is fitted.
 
         What 0 is no value of must be there; all else that is left out is 0. Values are not checked. Wheels beyond the
         core's array are only counted, so that the check refuses them.
@@ -128,7 +135,8 @@ class Core:
             if part in data:
                 plain[part] = table(self, path, path, data[part])
         vehicle = self.ffi.new("laconic_vehicle *", plain)
-        wheels = list(items("vehicle.wheel", data.get("wheel", ())))
+        wheels = [(name, wheel_in_core_terms(self, name, wheel))
+                  for name, wheel in items("vehicle.wheel", data.get("wheel", ()))]
         supports = list(items("vehicle.support", data.get("support", ())))
         vehicle.wheel_count, vehicle.support_count = len(wheels), len(supports)
         for target, (name, wheel) in zip(vehicle.wheel, wheels, strict=False):
@@ -149,11 +157,12 @@ class Core:
         return vehicle
 
     def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
-        given = {"roller_rad": OMNI_ROLLER_RAD, **table(self, "vehicle.wheel[#]", name, wheel, ("kind",))}
+        read = table(self, "vehicle.wheel[#]", name, wheel, ("kind",))
+        given = {"roller_rad": OMNI_ROLLER_RAD, **read}
         if "kind" not in wheel:
             raise BadInput(f"{name}.kind: is missing; give one of {', '.join(sorted(WHEEL_KINDS))}")
         kind = one_of(f"{name}.kind", wheel.get("kind"), WHEEL_KINDS)
-        if kind in NEEDS_ROLLER and "roller_rad" not in wheel:
+        if kind in NEEDS_ROLLER and "roller_rad" not in read:
             raise BadInput(f"{name}.roller_rad: is missing; give the angle between axle and rollers, such as "
                            f"{math.pi / 4:g} (45°)")
         target.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")

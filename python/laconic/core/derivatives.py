@@ -14,11 +14,12 @@ import difflib
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from laconic.core.copies import OwnMemory
 from laconic.core.fields import Field
 from laconic.core.given import by_names, finite_number, finite_numbers, flag, name_list, shown
 from laconic.core.inputs import check_finite_input
@@ -50,19 +51,28 @@ class StepJacobian:
     input_names: tuple[str, ...]
 
 
-class StepDerivatives:
+class StepDerivatives(OwnMemory):
     """The derivatives of the step that `plant` takes next with the input held, which is given as for `Plant.run`.
 
     Derivatives of the method's own formulas, exact but for rounding. The plant stays as it is. Raises Refused where the
     step would be refused, BadInput for a vehicle with friction, whose step is not smooth.
     """
 
+    RENEWED: ClassVar[dict[str, Any]] = {"_step": ()}
+
     def __init__(self, plant: Plant, held: Any = None):
         check_smooth(plant)
         self.plant, self.core, self.wheels = plant, plant.core, plant.wheel_count
         self.held = plant.input_of(held)
-        at = plant.core.ffi.addressof
-        self._step = (at(plant.c, "model"), at(plant.c, "integrator"), at(plant.c, "state"), self.held)
+        self._step = self._step_of_plant()
+
+    def _step_of_plant(self) -> tuple[Any, ...]:
+        at, c = self.core.ffi.addressof, self.plant.c
+        return at(c, "model"), at(c, "integrator"), at(c, "state"), self.held
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__(state)
+        self._step = self._step_of_plant()
 
     @property
     def state_names(self) -> tuple[str, ...]:
@@ -172,7 +182,9 @@ class StepDerivatives:
 
     def _vary(self, by: Any, name: str, value: float) -> None:
         head, _, key = name.rpartition(".")
-        item = re.fullmatch(r"wheel\[(\d+)\]", head)
+        if not isinstance(name, str):
+            raise BadInput(f"vehicle: {shown(name)} is no name of a number; give one such as \"mass_kg\"")
+        item = re.fullmatch(r"wheel\[(\d{1,4})\]", head)
         if item and not 1 <= int(item[1]) <= self.wheels:
             raise BadInput(f"{name}: there is no such wheel; give 1 to {self.wheels}")
         tables = {"": ("vehicle", by), "payload": ("vehicle.payload", by.payload), "ground": ("ground", by.ground)}

@@ -64,7 +64,7 @@ def _count(given: Any, is_of_list: bool, fail: Fail) -> int:
         return 0
     count = _whole(COUNTS, given, A_COUNT, fail)
     if count <= 0:
-        fail(COUNTS, f"is {count}; give a number above 0{', false for none' * is_of_list}")
+        fail(COUNTS, f"is {shown(count)}; give a number above 0{', false for none' * is_of_list}")
     return count
 
 
@@ -115,8 +115,8 @@ def signed(counts: np.ndarray) -> np.ndarray:
 def _wrap(given: Any, fail: Fail) -> int:
     wrap = _whole(WRAP, given, "a whole number", fail, (WHOLE_COUNT,))
     if wrap < 2:
-        fail(WRAP, f"is {wrap}; give the number of values that the counter has, such as 65536, or take it out for 32 "
-             "bits")
+        fail(WRAP, f"is {shown(wrap)}; give the number of values that the counter has, such as 65536, or take it out "
+             "for 32 bits")
     return wrap
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import NotCopied, OwnMemory
 from laconic.core.given import c_object, step_count
 from laconic.core.saved import check_saved
 from laconic.core.schedule import Schedule
@@ -52,8 +53,9 @@ class Errors:
     """Steps of which no half was taken: all that they change counts as error. 0: none."""
 
 
-class Estimate:
-    """The error of one plant; `c` is the laconic_estimate itself. Step the plant by `run` from now on."""
+class Estimate(OwnMemory):
+    """The error of one plant; `c` is the laconic_estimate itself. Step the plant by `run` from now on. A copy watches a
+    plant of its own: `plant` of the copy."""
 
     def __init__(self, plant: Plant, most_steps: int = USUAL_STEPS):
         """No error yet; one step in `most_steps` is taken twice. Refused where that is not 1 to 1024."""
@@ -133,8 +135,10 @@ def sizes_of(error: Any) -> ErrorSizes:
 NAMES = tuple(ErrorSizes.__dataclass_fields__)
 
 
-class ErrorRows:
+class ErrorRows(NotCopied):
     """Rows of errors, one at the start of every `every`-th step; room for `rows` of them."""
+
+    REMEDY = "take its columns()"
 
     def __init__(self, plant: Plant, every: int, rows: int):
         ffi = plant.core.ffi

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.errors import BadInput, nearest_of
+from laconic.errors import shown as shown
 
 if TYPE_CHECKING:
     from laconic.core import Core
@@ -20,21 +21,20 @@ MAKERS = {"input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})",
           "batch_kind": "batch.prepared(vehicle)"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
-LONGEST_SHOWN = 60  # of a value in a message
+MOST_BITS = 128  # of a whole number: more than any that is asked for has
 REAL = ("f", "i", "u")  # kinds of NumPy's types that are real numbers
 
 
-def shown(value: Any) -> str:
-    """A value in a message."""
-    text = repr(value)
-    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
-
-
 def is_real(value: Any) -> bool:
-    """Whether it may be a real number: no text, flag, complex number, date or duration, of Python or NumPy, and none
-    that is masked."""
-    return not (isinstance(value, str | bytes | bool) or is_masked(value)) \
+    """Whether it may be a real number: no text, bytes, flag, complex number, date or duration, of Python or NumPy, and
+    none that is masked."""
+    return not (isinstance(value, str | bool) or is_bytes(value) or is_masked(value)) \
         and getattr(getattr(value, "dtype", None), "kind", "f") in REAL
+
+
+def is_bytes(value: Any) -> bool:
+    """Whether it is bytes, or a view of memory as bytes, whose numbers nobody meant."""
+    return isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.itemsize == 1)
 
 
 def is_masked(value: Any) -> bool:
@@ -48,14 +48,14 @@ def number(name: str, value: Any) -> float:
         return float(value if is_real(value) else "no number")
     except OverflowError:
         return math.inf if value > 0 else -math.inf
-    except (TypeError, ValueError):
+    except Exception:  # of whatever class it is
         raise BadInput(f"{name}: {shown(value)} is no number; give one") from None
 
 
 def several(values: Any) -> list[Any] | None:
     """The items of a list, tuple, array …; None for what is none: text, bytes, a mapping, and a set, which has no
     order."""
-    if isinstance(values, str | bytes | bytearray | Mapping | Set):
+    if isinstance(values, str | Mapping | Set) or is_bytes(values):
         return None
     try:
         return list(values)
@@ -100,7 +100,8 @@ def one_of(name: str, given: Any, known: Iterable[str]) -> str:
     """A word that is among those that are known."""
     words = list(known)
     if not isinstance(given, str) or given not in words:
-        raise BadInput(f"{name}: there is no {shown(given)}; {nearest_of(str(given), words)}")
+        near = nearest_of(given if isinstance(given, str) else "", words)
+        raise BadInput(f"{name}: there is no {shown(given)}; {near}")
     return given
 
 
@@ -120,11 +121,14 @@ def by_names(name: str, given: Any) -> Mapping[str, Any]:
 
 
 def whole_number(name: str, value: Any) -> int:
-    """A whole number of any size and sign."""
+    """A whole number of either sign, of at most MOST_BITS."""
     try:
-        return operator.index(value if is_real(value) else None)  # type: ignore[arg-type]  # which it refuses
+        found = operator.index(value if is_real(value) else None)  # type: ignore[arg-type]  # which it refuses
     except TypeError:
         raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one, such as 100") from None
+    if found.bit_length() > MOST_BITS:
+        raise BadInput(f"{name}: {shown(found)} is beyond all bounds; give one such as 100")
+    return found
 
 
 def step_count(name: str, value: Any) -> int:
@@ -148,13 +152,17 @@ def c_object(core: Core, kind: str, given: Any) -> Any:
 
 
 def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = ()) -> dict[str, float | bool]:
-    """The numbers of one table of a vehicle by the core's list of fields; `others` are keys that the caller reads.
+    """The numbers of one table of a vehicle by the core's list of fields, angles in rad whatever the table has;
+    `others` are keys that the caller reads.
 
     BadInput names a key that is unknown or that holds no number.
     """
     if not isinstance(given, Mapping):
         raise BadInput(f"{name}: {shown(given)} is no table; give a mapping from keys to numbers")
+    from laconic.core.spelling import with_radians  # which reads numbers by this room
+
     fields = {field.key: field for field in core.fields_of(path)}
+    given = with_radians(name, given, fields)
     known = list(dict.fromkeys((*fields, *others)))
     if unknown := [key for key in given if key not in known]:
         raise BadInput(f"{name}.{unknown[0]}: unknown key; {nearest_of(str(unknown[0]), known)}")
@@ -186,6 +194,6 @@ def _of_kind(kind: str, name: str, given: Any) -> float | bool:
 
 def items(name: str, given: Any) -> Iterator[tuple[str, Any]]:
     """The tables of a list with their names, numbered from 1."""
-    if isinstance(given, str | Mapping) or not isinstance(given, Sequence):
+    if isinstance(given, str | Mapping) or is_bytes(given) or not isinstance(given, Sequence):
         raise BadInput(f"{name}: {shown(given)} is no list; give a list of tables")
     return ((f"{name}[{item}]", each) for item, each in enumerate(given, start=1))

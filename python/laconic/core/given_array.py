@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.core.given import REAL, is_masked, shown
+from laconic.core.given import REAL, is_bytes, is_masked, shown
 from laconic.errors import BadInput
 
 
@@ -43,7 +43,7 @@ def real_array(name: str, given: Any, shape: Sequence[Length], unit: str = "", *
 def any_array(given: Any) -> np.ndarray:
     """As NumPy takes it; an array of objects for rows of unlike lengths, where numbers are masked, and what else is no
     array."""
-    if isinstance(given, bytearray) or is_masked(given) or (
+    if is_bytes(given) or is_masked(given) or (
             isinstance(given, list | tuple) and any(map(is_masked, given))):
         return np.empty((), object)
     try:

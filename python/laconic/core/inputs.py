@@ -48,7 +48,8 @@ def slots_of(core: Core, signal: str, wheel_count: int | None = None) -> range:
     if not index:
         return range(start, start + length)
     item = index.removesuffix("]")
-    if not item.isdecimal() or not 1 <= int(item) <= length or signal != f"{name}[{int(item)}]":  # one spelling each
+    is_number = len(item) <= len(str(length)) and item.isdecimal()
+    if not is_number or not 1 <= int(item) <= length or signal != f"{name}[{int(item)}]":  # one spelling each
         items = wheel_count if wheel_count and name in PER_WHEEL else length
         raise BadInput(f"{signal}: there is no such item; give {f'1 to {items}' if items > 1 else name}")
     return range(start + int(item) - 1, start + int(item))

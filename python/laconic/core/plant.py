@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from laconic.core.copies import OwnMemory
 from laconic.core.derivatives import StepDerivatives
 from laconic.core.estimate import USUAL_STEPS, Estimate
 from laconic.core.given import c_object, number, shown, step_count
@@ -34,8 +35,10 @@ class Pose(NamedTuple):
     origin_y_m: float
 
 
-class Plant:
-    """Steps and outputs of one vehicle; `c` is the laconic_plant itself."""
+class Plant(OwnMemory):
+    """Steps and outputs of one vehicle; `c` is the laconic_plant itself. A copy moves by itself from where this is."""
+
+    RENEWED: ClassVar[dict[str, Any]] = {"_contact": None, "_parts": {}}
 
     def __init__(self, core: Core, plant: Any):
         self.core, self.c = core, plant

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import NotCopied
 from laconic.core.encoders import unsigned
 from laconic.core.grip import Grip
 
@@ -18,17 +19,21 @@ MEMBERS = {  # of laconic_outputs, where they are not called as the signal is
     **{name: ("pose", name) for name in
        ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")},
     "wheel_reaction_N": ("reactions", "along_N"), "wheel_lateral_N": ("reactions", "lateral_N"),
-    "no_slip_margin_N": ("reactions", "no_slip_margin_N"),
+    "no_slip_margin_N": ("reactions", "no_slip_margin_N"), "normal_load_N": ("reactions", "normal_N"),
 }
 FRICTION = "friction"  # the member of laconic_outputs with what only a vehicle with friction shows
 SENSED = "sensors"  # the member with what sensors show
 OUTPUTS_OF = {FRICTION: "laconic_friction_outputs", SENSED: "laconic_sensor_outputs"}
 WHOLE = ("encoder_count",)
-GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what needs the reactions
+GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N", "normal_load_N",
+          "support_load_N")  # what needs the reactions
+OF_SUPPORTS = "support_load_N"  # behind those of the wheels in their list
 
 
-class Recorder:
+class Recorder(NotCopied):
     """`rows` rows of some signals, outputs or inputs, one at the start of every `every`-th step and one at the end."""
+
+    REMEDY = "take its columns()"
 
     def __init__(self, plant: Plant, signals: tuple[str, ...], every: int, rows: int, watched: bool = False,
                  sensors: Sensors | None = None):
@@ -36,7 +41,7 @@ class Recorder:
         core, ffi = plant.core, plant.core.ffi
         self._plant, self.signals = plant, signals
         self._table = np.zeros((rows, len(signals)), core.dtype)
-        self._offsets = np.array([offset_of(core, signal) for signal in signals], np.uint32)
+        self._offsets = np.array([offset_of(core, signal, plant.wheel_count) for signal in signals], np.uint32)
         ground = watched or any(signal.partition("[")[0] in GROUND for signal in signals)
         self._sensors = sensors  # keeps them alive
         self._grip = ffi.new("laconic_grip *") if watched else ffi.NULL
@@ -95,9 +100,11 @@ def needs_sensors(core: Core, signal: str) -> bool:
     return signal.partition("[")[0] in _members(core, "laconic_sensor_outputs")
 
 
-def offset_of(core: Core, signal: str) -> int:
-    """Where a signal stands in laconic_outputs, in bytes; the index counts from 1."""
+def offset_of(core: Core, signal: str, wheel_count: int) -> int:
+    """Where a signal of a plant with so many wheels stands in laconic_outputs, in bytes; the index counts from 1."""
     name, _, index = signal.partition("[")
+    if name == OF_SUPPORTS:
+        name, index = "normal_load_N", str(int(index.rstrip("]")) + wheel_count)
     member = ("input", name) if name in core.input_fields else MEMBERS.get(name, (name,))
     for part in (FRICTION, SENSED):
         if name in _members(core, OUTPUTS_OF[part]):

@@ -7,18 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import NotCopied
+
 if TYPE_CHECKING:
     from laconic.core import Core
 
 FOR_EVER = 2**64 - 1  # steps: the last values of a held schedule stay
 
 
-class Schedule:
+class Schedule(NotCopied):
     """Values of some signals over steps from `first_step` on; every other input is zero.
 
     Held: `values` (stretch, signal), and `until_step`, where each stretch ends. Sampled: `values` (step,
     start|middle|end, signal). `signals` are offsets in a row of input numbers, see Core.input_offset.
     """
+
+    REMEDY = "make another one of the same values"
 
     @np.errstate(over="ignore")  # the core names a number that is too large for its scalar type
     def __init__(self, core: Core, signals: Sequence[int], values: np.ndarray,

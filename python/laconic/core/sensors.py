@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.copies import OwnMemory
 from laconic.core.encoders import (
     GEAR,
     KEYS,
@@ -30,6 +31,7 @@ from laconic.core.fields import ITEM, Field
 from laconic.core.given import c_object, is_real, number, several, shown, step_count
 from laconic.core.inputs import sampled_rows
 from laconic.core.saved import check_saved
+from laconic.core.spelling import with_radians
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -52,9 +54,9 @@ class Readings:
     """(N,), whole numbers; 0 for a wheel without an encoder."""
 
 
-class Sensors:
+class Sensors(OwnMemory):
     """IMU and encoders of one plant; `c` is the laconic_sensors itself. Step the plant by `run` from now on, as the
-    sensors must see each step."""
+    sensors must see each step. A copy watches a plant of its own: `plant` of the copy."""
 
     def __init__(self, plant: Plant, settings: Any, is_unsigned: bool = False):
         """Sensors as after power-up, beside a plant that stands where it is; `settings`: a laconic_sensor_settings.
@@ -124,7 +126,9 @@ def settings_of(core: Core, given: Mapping[str, Any], wheel_count: int) -> Any:
     settings = core.ffi.new("laconic_sensor_settings *")
     top = _mapping("sensors", given, ("imu", "encoder"))
     fields = {field.key: field for field in core.fields_of(IMU)}
-    for key, value in _mapping(IMU, top.get("imu", {}), fields).items():
+    imu = top.get("imu", {})
+    for key, value in _mapping(IMU, with_radians(IMU, imu, fields) if isinstance(imu, Mapping) else imu,
+                               fields).items():
         _put(settings, fields[key], _values(f"{IMU}.{key}", fields[key], value))
     if "encoder" in top:
         put_encoders(core, settings, ENCODER, top["encoder"], wheel_count)
@@ -187,7 +191,7 @@ def _whole(name: str, value: Any) -> int:
     if found is None or not is_real(value):
         raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one")
     if not LEAST_INTEGER <= found <= MOST_INTEGER:
-        raise BadInput(f"{name}: {found} has more than 32 bits; give {LEAST_INTEGER} to {MOST_INTEGER}")
+        raise BadInput(f"{name}: {shown(found)} has more than 32 bits; give {LEAST_INTEGER} to {MOST_INTEGER}")
     return found
 
 

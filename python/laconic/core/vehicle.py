@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.binding import Core, Matrices, load
+from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers
 from laconic.core.inputs import check_finite_input
 from laconic.core.plant import Plant
@@ -47,15 +48,15 @@ class Linearisation:
     voltage_matrix: np.ndarray  # (6, N)  by each wheel's voltage, 1 V
 
 
-class Vehicle:
+class Vehicle(OwnMemory):
     """A checked vehicle in one scalar type, which does not move: `plant` makes one that does.
 
     `table` has the keys of a scene's `[vehicle]` (docs/scenes.md), with "wheel", "support", "motor", "payload", "drive"
-    as tables inside and the scene's `[ground]` as "ground"; angles in rad, positions in m. Mass, yaw inertia and wheel
-    radius must be given, of a wheel its kind, of a motor what a scene must give, of a support its place; what else is
-    left out is 0. `build_scene` and `of` take what a scene may have besides, such as angles in degrees. Raises BadInput
-    for a key that is unknown or missing and for what is no number, Refused for numbers that make no vehicle; all name
-    the field.
+    as tables inside and the scene's `[ground]` as "ground", spelled as a scene may spell them: angles in rad or with
+    `_deg` at the key's end, a wheel's place by x_m and y_m or by distance_m and bearing_rad. Mass, yaw inertia and
+    wheel radius must be given, of a wheel its kind, of a motor what a scene must give, of a support its place; what
+    else is left out is 0. Raises BadInput for a key that is unknown, missing or given twice and for what is no number,
+    Refused for numbers that make no vehicle; all name the field.
     """
 
     def __init__(self, table: Mapping[str, Any], real: str = "double"):

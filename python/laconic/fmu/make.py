@@ -15,7 +15,7 @@ from laconic.base.paths import SOURCE_DIR, as_path, built
 from laconic.core import load
 from laconic.core.given import flag
 from laconic.core.sensors import settings_of, values_of
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.scene import METHODS, Scene, check_scene
 from laconic_fmu.archive import Content, Variant, scene_fmu
 from laconic_fmu.page import vehicle_parts
@@ -74,7 +74,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     if estimate and derivatives:
         raise BadInput("estimate, derivatives: no FMU has both; leave one of them out")
     if not isinstance(version, int | np.integer) or version not in VERSIONS:
-        raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
+        raise BadInput(f"version: there is no FMI {shown(version)}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))
     check_file("out", path)

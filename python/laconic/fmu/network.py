@@ -28,7 +28,7 @@ from laconic.can.rig.lockstep import load_scene
 from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.options import read_id_base
 from laconic.can.rig.wire import ID_BASE, ID_STRIDE
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.fmu.make import content_of
 from laconic.scene import Scene, check_scene
 from laconic_fmu.network import TX_CLOCKS, NodeContent, node_fmu
@@ -101,7 +101,7 @@ def make_network_fmu(scene: Scene, out: str | Path, *, drives: str | None = None
     start, else it waits for a rig. BadInput when the scene has no such FMU."""
     check_scene(scene)
     if tx_clock not in TX_CLOCKS:
-        raise BadInput(f"tx_clock: there is no {tx_clock!r}; give {' or '.join(TX_CLOCKS)}")
+        raise BadInput(f"tx_clock: there is no {shown(tx_clock)}; give {' or '.join(TX_CLOCKS)}")
     if scene.wheel_count == 0:
         raise BadInput(f"{scene.path}: vehicle.wheel: there is none; a node on a bus needs a wheel")
     id_base, settings = read_id_base(None, scene), None

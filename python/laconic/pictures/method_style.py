@@ -1,7 +1,7 @@
-"""How a method is drawn in every picture of the project: one colour and one marker each, in this one table.
+"""How a method is drawn in every picture of the project: one colour and one marker each, by its number.
 
-    axes.loglog(times, errors, **style_of("rk4"))              # line and markers, with the method's name as the label
-    axes.plot(t, y, **style_of("rk4", marker="", label=None))  # a keyword replaces the one of the table
+    axes.loglog(times, errors, **style_of("auto"))             # line and markers, with the method's name as the label
+    axes.plot(t, y, **style_of("auto", marker="", label=None)) # a keyword replaces the one of the table
 
 `auto` gives the numbers of the method that it picks, so its points lie on that method's. Its markers are large and
 hollow, lie on top and have no line, so that both are seen.
@@ -11,6 +11,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
+
+from laconic.scene.methods import METHODS
 
 MARKER_SIZE = 5.0  # points; hollow markers are twice as large
 
@@ -24,16 +26,13 @@ class MethodStyle:
     hollow: bool = False
 
 
-METHOD_STYLES = {
-    "auto": MethodStyle("#111111", "o", hollow=True),
-    "rk4": MethodStyle("#d1495b", "s"),
-    "exponential-kahan": MethodStyle("#e9a23b", "^"),
-    "exponential-kahan-4": MethodStyle("#2a9d8f", "D"),
-    "exact-flow": MethodStyle("#8d6cab", "v"),
-    "exact-flow-4": MethodStyle("#3066be", "P"),
-    "taylor-8": MethodStyle("#7a5230", "X"),
-    "exponential-gauss-8": MethodStyle("#c2185b", "*"),
-}
+PALETTE = (
+    MethodStyle("#111111", "o", hollow=True), MethodStyle("#d1495b", "s"), MethodStyle("#e9a23b", "^"),
+    MethodStyle("#2a9d8f", "D"), MethodStyle("#8d6cab", "v"), MethodStyle("#3066be", "P"), MethodStyle("#7a5230", "X"),
+    MethodStyle("#c2185b", "*"), MethodStyle("#9bc53d", "p"), MethodStyle("#5bc0eb", "h"), MethodStyle("#1b5e20", "<"),
+    MethodStyle("#f4a6c0", ">"))
+"""By the numbers of the methods; those beyond the first eight are for methods to come."""
+METHOD_STYLES = dict(zip(METHODS, PALETTE, strict=False))
 FOREIGN = MethodStyle("#777777", "x")  # somebody else's integrator
 
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import LONGEST_NAME, BadInput, cut, shown
 from laconic.scene.scene import Scene, scene_of
-from laconic.scene.table import LONGEST_SHOWN, Table, plain
+from laconic.scene.table import Table, plain
 
 
 def build_scene(tables: Mapping[str, Any]) -> Scene:
@@ -20,12 +20,13 @@ def build_scene(tables: Mapping[str, Any]) -> Scene:
     rad or with `_deg` at the key's end; arrays stand for lists. Raises BadInput as `read_scene` does: it names the key.
     """
     if not isinstance(tables, Mapping):
-        raise BadInput(f"scene: {tables!r} is no mapping; give the tables of a scene, such as {{\"vehicle\": …}}")
-    name = str(tables.get("name") or "scene")
+        raise BadInput(f"scene: {shown(tables)} is no mapping; give the tables of a scene, such as {{\"vehicle\": …}}")
+    given = tables.get("name")
+    name = given[:LONGEST_NAME] if isinstance(given, str) and given else "scene"
     try:
         values = _values(tables)
     except RecursionError:
-        raise BadInput(f"{name[:LONGEST_SHOWN]}: nests its tables too deeply, or one in itself; give those of a scene"
+        raise BadInput(f"{cut(name)}: nests its tables too deeply, or one in itself; give those of a scene"
                        ) from None
     return scene_of(Table(Path(name.replace("/", "-")), "", values))
 

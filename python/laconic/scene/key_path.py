@@ -16,7 +16,7 @@ from laconic.scene.keys import KEYS
 from laconic.scene.reference import KINDS, path_of, scene_fields
 
 EVERY = 0  # an item `[*]`
-PART = re.compile(r"(\w+)(?:\[(\*|\d+)\])?")
+PART = re.compile(r"(\w+)(?:\[(\*|\d{1,9})\])?")
 SEVERAL = ("vehicle.wheel", "vehicle.support", "input")
 """Tables of which there are several."""
 
@@ -85,7 +85,7 @@ def _known(text: str, tables: list[tuple[str, int | None]], name: str) -> KnownK
         raise BadInput(f"{text}: is no key of a scene; {near}")
     if name not in keys:
         known = keys | {f"{table}.…" for table in _tables_in(before)}
-        raise BadInput(f"{text}: {before.replace('[#]', '')} has no key {name!r}; {nearest_of(name, known)}")
+        raise BadInput(f"{text}: {before.replace('[#]', '')} has no key {shown(name)}; {nearest_of(name, known)}")
     for place, (_, item) in enumerate(tables):
         _check_number(text, tables[: place + 1], item)
     return found[f"{before}.{name}" if before else name]

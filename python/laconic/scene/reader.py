@@ -9,7 +9,8 @@ from typing import Any
 
 from laconic.core import Field, load
 from laconic.core.inputs import no_such_wheel
-from laconic.errors import nearest_of
+from laconic.core.spelling import PLAIN, place_by_bearing
+from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
@@ -30,6 +31,9 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": source}
     if not parts["name"].strip():
         top.fail("name", "is empty; give a name, or take it out for the file's own")
+    if len(parts["name"]) > LONGEST_NAME:
+        top.fail("name", f"has {len(parts['name'])} letters; give at most {LONGEST_NAME}, and what else there is to "
+                 "say as source")
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))
@@ -116,16 +120,10 @@ def read_own(table: Table, fields: Sequence[Field]) -> dict[str, float]:
 
 def read_position(table: Table) -> dict[str, float]:
     """x_m and y_m, or distance_m and a bearing from the ξ axis."""
-    polar = [key for key in ("distance_m", "bearing_rad", "bearing_deg") if table.has(key)]
-    plain = [key for key in ("x_m", "y_m") if table.has(key)]
-    if polar and plain:
-        table.fail(polar[0], f"is given besides {plain[0]}; give x_m and y_m, or distance_m and bearing_rad")
-    if not polar:
-        return {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
-    distance, bearing = table.number("distance_m"), table.angle("bearing")
-    if distance < 0:
-        table.fail("distance_m", f"is {distance:g}; give 0 or more, and the direction by the bearing")
-    return {"x_m": distance * math.cos(bearing), "y_m": distance * math.sin(bearing)}
+    place = place_by_bearing(table)
+    if place is None:
+        return {key: table.number(key, finite=False) for key in PLAIN}
+    return dict(zip(PLAIN, place, strict=True))
 
 
 def read_point(table: Table) -> dict[str, float]:
@@ -169,7 +167,7 @@ def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], p
     name = signal.partition("[")[0]
     if name in per_wheel:
         table.fail(key, no_such_wheel(signal, name, wheel_count))
-    table.fail(key, f"there is no signal {signal!r}; {nearest_of(signal, known)}")
+    table.fail(key, f"there is no signal {shown(signal)}; {nearest_of(signal, known)}")
 
 
 def read_input(table: Table, wheel_count: int) -> Input:
@@ -203,7 +201,7 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
 
 def read_step(table: Table) -> dict[str, Any]:
     """A step, or "auto" (as 0, until it is found) with the tolerance that it must keep."""
-    given = table.plain().get("step_s")
+    given = table.peek("step_s")
     if not isinstance(given, str) or given != AUTO:
         if table.has("tolerance"):
             table.fail("tolerance", f'has a meaning with step_s = "{AUTO}" alone; take one of them out')

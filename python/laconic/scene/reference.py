@@ -17,6 +17,7 @@ from laconic.scene.signals import (
     FRICTION_LENGTHS,
     FRICTION_PER_WHEEL,
     LENGTHS,
+    LOADS,
     NEEDED,
     OUTPUT_LENGTHS,
     OUTPUTS_PER_WHEEL,
@@ -33,6 +34,8 @@ RANGES = {"POSITIVE": "above 0", "NOT_NEGATIVE": "0 or more", "SHARE": "0 to 1",
 NEEDS = {"WITH_WHEELS": "must be given where there are wheels", "NEVER": "0",
          "WITH_MOTOR": "no motor; one of the two alone is refused"}
 MUST = "must be given"
+LOADS_IN_WORDS = {LOADS[0]: "Normal load of each wheel; below 0 it would lift",
+                  LOADS[1]: "Normal load of each support; below 0 it would lift"}
 OF_FMUS = (r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)"
            r"|; 0 (without|where|for) [^;]*")
 """Words that a variable has for the sake of FMI alone."""
@@ -153,12 +156,13 @@ def inputs(words: Mapping[str, str]) -> list[Signal]:
 def outputs(words: Mapping[str, str]) -> list[Signal]:
     """What `[outputs]` may list."""
     friction = {**dict.fromkeys(FRICTION_PER_WHEEL, -1), **FRICTION_LENGTHS}
-    every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), **friction, **OF_IMU,
+    every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), LOADS[0]: -1, LOADS[1]: -2, **friction, **OF_IMU,
              **dict.fromkeys(OF_ENCODERS, -1)}
     return _signals(every, words)
 
 
 def _signals(lengths: Mapping[str, int], words: Mapping[str, str]) -> list[Signal]:
-    items = {-1: "[i]", 0: "", 2: "[1|2]", 3: "[1|2|3]"}
+    words = LOADS_IN_WORDS | dict(words)
+    items = {-2: "[j]", -1: "[i]", 0: "", 2: "[1|2]", 3: "[1|2|3]"}
     return [Signal(name, items[length], unit_of(name), re.sub(OF_FMUS, "", words[name]), NEEDED.get(name, ""))
             for name, length in lengths.items()]

@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 
 from laconic.base.paths import scene_path
 from laconic.core.given import shown
+from laconic.core.spelling import PLAIN, x_and_y
 from laconic.errors import BadInput
 from laconic.scene.key_defaults import default_of
 from laconic.scene.key_path import EVERY, KeyPath, key_path
@@ -25,7 +26,7 @@ from laconic.scene.step_choice import AUTO
 from laconic.scene.table import Table, plain, read_toml
 
 Value = float | bool | str
-POLAR, PLAIN = ("distance_m", "bearing_rad"), ("x_m", "y_m")
+POLAR = ("distance_m", "bearing_rad")
 
 
 @dataclass(frozen=True)
@@ -175,7 +176,7 @@ def spelled_otherwise(name: str) -> str:
 def place_of(wheel: Mapping[str, Any]) -> tuple[float, float]:
     """x and y of a wheel that the file gives by distance and bearing, with the bits of the scene's reader."""
     bearing = math.radians(wheel["bearing_deg"]) if "bearing_deg" in wheel else wheel.get("bearing_rad", 0.0)
-    return wheel["distance_m"] * math.cos(bearing), wheel["distance_m"] * math.sin(bearing)
+    return x_and_y(wheel["distance_m"], bearing)
 
 
 def convert_place(wheel: dict[str, Any], name: str) -> None:

@@ -25,11 +25,15 @@ FRICTION_LENGTHS = dict.fromkeys(
      "motor_loss_J", "supply_loss_J", "numerical_loss_J"), 0)
 """Outputs of scenes with ground friction or a drive with limits alone."""
 
+LOADS = ("normal_load_N", "support_load_N")
+"""Normal loads: one for each wheel, one for each support."""
+
 OF_SUPPLY = ("supply_current_A", "supply_voltage_V")
 OF_MOTOR = ("motor_current_A",)
 NEEDED = {**dict.fromkeys((*FRICTION_PER_WHEEL, *FRICTION_LENGTHS), "ground friction, a drive or a motor circuit"),
          **dict.fromkeys(OF_SUPPLY, "`vehicle.drive.supply_V`"),
          **dict.fromkeys(OF_MOTOR, "`[vehicle.motor]` and ground friction, a drive or a motor circuit"),
+         LOADS[1]: "`[[vehicle.support]]`",
          **dict.fromkeys(OF_IMU, "`[sensors.imu]`"), **dict.fromkeys(OF_ENCODERS, "`[sensors.encoder]`")}
 """What some outputs need, in words."""
 
@@ -37,9 +41,11 @@ NEEDED = {**dict.fromkeys((*FRICTION_PER_WHEEL, *FRICTION_LENGTHS), "ground fric
 def output_signals(vehicle: dict[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
     """What a vehicle shows: names with their lengths, and names with one item for each wheel; with those of sensors,
     which a scene need not have."""
+    of_wheels, of_supports = LOADS
+    lengths = OUTPUT_LENGTHS | {of_supports: len(vehicle["support"])} | OF_IMU
     if has_friction(vehicle):
-        return OUTPUT_LENGTHS | OF_IMU | FRICTION_LENGTHS, (*OUTPUTS_PER_WHEEL, *OF_ENCODERS, *FRICTION_PER_WHEEL)
-    return OUTPUT_LENGTHS | OF_IMU, (*OUTPUTS_PER_WHEEL, *OF_ENCODERS)
+        return lengths | FRICTION_LENGTHS, (*OUTPUTS_PER_WHEEL, of_wheels, *OF_ENCODERS, *FRICTION_PER_WHEEL)
+    return lengths, (*OUTPUTS_PER_WHEEL, of_wheels, *OF_ENCODERS)
 
 
 def missing_outputs(vehicle: dict[str, Any], sensors: SensorTables) -> Mapping[str, str]:
@@ -48,6 +54,8 @@ def missing_outputs(vehicle: dict[str, Any], sensors: SensorTables) -> Mapping[s
     every = {name: 0 for name in FRICTION_LENGTHS} | dict.fromkeys(FRICTION_PER_WHEEL, count)
     why = {name: text for name in every if (text := _lacks(vehicle, name))}
     indexed = {f"{name}[{i}]": text for name, text in why.items() for i in range(1, every[name] + 1)}
+    if not vehicle["support"]:
+        why[LOADS[1]] = "is of supports, of which the scene has none; give [[vehicle.support]]"
     return {**missing_sensors(sensors, count), **why, **indexed}
 
 

@@ -9,20 +9,22 @@ import re
 import sys
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from datetime import date, time
 from pathlib import Path
 from typing import Any, NoReturn
 
 from laconic.core.given import is_masked
-from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.core.spelling import is_in_degrees
+from laconic.errors import BadInput, cut, nearest_of, reason_of, shown
 from laconic.scene.not_modelled import instead_of
+from laconic.scene.toml_bounds import BeyondBounds, check_bounds
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-LONGEST_SHOWN = 60  # of a value in a message
-MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual scene
+MOST_BYTES = 16 * 2**20  # of a file: thousands of usual scenes, and a wait that people bear
 NO_HINTS: Mapping[str, str] = {}
 
 
@@ -40,16 +42,17 @@ def read_toml(path: Path, decode: Callable[[bytes], str] | None = None) -> Table
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None
     except UnicodeDecodeError:
         raise BadInput(f"{path}: is no text in UTF-8; save it as UTF-8") from None
+    except BeyondBounds as error:
+        raise BadInput(f"{path}: {error}; give the path of another file") from None
     except tomllib.TOMLDecodeError as error:
         raise BadInput(f"{path}: is no valid TOML: {error}{_line_of(text, error)}; correct that line") from None
-    except ValueError:  # of Python
-        raise BadInput(f"{path}: is no valid TOML: a number has thousands of digits; correct it") from None
-    except RecursionError:
-        raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None
+    except ValueError:  # of Python, which reads no number of thousands of digits
+        raise BadInput(f"{path}: holds a number of thousands of digits; give numbers as people write them") from None
 
 
 def entries_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any]:
-    """What a TOML text holds, its decimals made by `number`; ValueError where it is none."""
+    """What a TOML text holds, its decimals made by `number`; ValueError where it is none, or beyond all bounds."""
+    check_bounds(text)
     return tomllib.loads(text, parse_float=number)
 
 
@@ -78,6 +81,10 @@ class Table:
     def expect(self, keys: Iterable[str]) -> None:
         """Keys that will be read: where one is missing, none of the others counts as its misspelling."""
         self._expected.update(keys)
+
+    def peek(self, key: str) -> Any:
+        """What the key holds, None where it is missing; it counts as unread still."""
+        return self._entries.get(key)
 
     def plain(self) -> dict[str, Any]:
         """A copy of all that the table holds, as it was read."""
@@ -123,9 +130,7 @@ class Table:
     def angle(self, stem: str, default: Any = ..., *, finite: bool = True) -> Any:
         """An angle in rad: from stem_rad, or from stem_deg in degrees."""
         in_radians, in_degrees = f"{stem}_rad", f"{stem}_deg"
-        if self.has(in_degrees):
-            if self.has(in_radians):
-                self.fail(in_degrees, f"is given besides {in_radians}; keep one of them")
+        if is_in_degrees(self, stem):
             self.in_degrees.add(self.name(in_radians))
             return math.radians(self.number(in_degrees, finite=finite))
         if default is REQUIRED and not self.has(in_radians):
@@ -146,15 +151,18 @@ class Table:
         return self._get(key, default, (bool,), "true or false")
 
     def whole(self, key: str, default: Any = ...) -> int:
-        """A whole number."""
-        return self._get(key, default, (int,), "a whole number")
+        """A whole number of at most 64 bits."""
+        found: int = self._get(key, default, (int,), "a whole number")
+        if found is not None and found.bit_length() > 64:
+            self.fail(key, f"is {_shown(found)}; give a whole number of at most 64 bits")
+        return found
 
     def choice(self, key: str, choices: Sequence[str], default: Any = ..., *,
                hints: Mapping[str, str] = NO_HINTS) -> str:
         """One of some words; hints as in laconic.scene.not_modelled."""
         word = self.text(key, default)
         if word is not None and word not in choices:
-            self.fail(key, f"there is no {word!r}; {nearest_of(word, choices, instead_of(word, hints))}")
+            self.fail(key, f"there is no {shown(word)}; {nearest_of(word, choices, instead_of(word, hints))}")
         return word
 
     def numbers(self, key: str, length: int | None = None, *, finite: bool = True) -> tuple[float, ...]:
@@ -204,7 +212,7 @@ def _line_of(text: str, error: Exception) -> str:
     lines = text.splitlines()
     if not found or int(found[1]) > len(lines):
         return ""
-    return f", {_short(lines[int(found[1]) - 1].strip())!r}"
+    return f", {shown(lines[int(found[1]) - 1].strip())}"
 
 
 def plain(value: Any) -> Any:
@@ -227,13 +235,9 @@ def _shown(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return f'the text "{_short(value)}"'
+        return f'the text "{cut(value)}"'
     if isinstance(value, (list, dict)):
         return "a list" if isinstance(value, list) else "a table"
     if is_masked(value):
         return "masked"
-    return _short(repr(value)) if isinstance(value, (int, float)) else str(value)  # dates as they are written
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
+    return str(value) if isinstance(value, date | time) else shown(value)  # dates as they are written

@@ -84,9 +84,8 @@ export interface Scene {
   run?: { step_s?: number; method?: MethodName };
 }
 
-export type MethodName =
-  "auto" | "rk4" | "exponential-kahan" | "exponential-kahan-4" | "exact-flow" | "exact-flow-4" | "taylor-8"
-  | "exponential-gauss-8";
+/** In the package: the names of the core's methods. */
+export type MethodName = string;
 
 /** What acts, one item for each wheel; what is not given is 0. */
 export interface Input {
@@ -178,8 +177,8 @@ export class Laconic {
   readonly arithmeticIsSound: boolean;
   /** @throws Refused */
   robot(scene: Scene, run?: { method?: MethodName; step_s?: number }): Robot;
-  /** Two numbers that depend on every bit of many trajectories, the second on those of exponential-gauss-8; equal on every
-   * platform. */
+  /** Numbers that depend on every bit of many trajectories: of six methods together, then of each later one; equal on
+   * every platform. */
   hash(): string;
 }
 

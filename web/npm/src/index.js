@@ -30,13 +30,14 @@ export class Laconic {
   }
 
   /**
-   * Numbers that depend on every bit of many trajectories, each as 16 hexadecimal digits: of the methods up to
-   * taylor-8, and of exponential-gauss-8.
+   * Numbers that depend on every bit of many trajectories, each as 16 hexadecimal digits: of six methods together,
+   * then of each later one.
    */
   hash() {
-    const line = (/** @type {number} */ number) =>
-      BigInt.asUintN(64, this.module.c.laconic_web_hash(number)).toString(16).padStart(16, "0");
-    this.hashed ??= `${line(0)} ${line(1)}`;
+    const lines = [];
+    for (let line = 0, bits; (bits = this.module.c.laconic_web_hash(line)); line++)
+      lines.push(BigInt.asUintN(64, bits).toString(16).padStart(16, "0"));
+    this.hashed ??= lines.join(" ");
     return this.hashed;
   }
 }

@@ -4,9 +4,10 @@ import { byId } from "./texts.js";
 
 const WORKER = `onmessage = async ({ data }) => {
   const instance = await WebAssembly.instantiate(data);
-  const line = (number) =>
-    BigInt.asUintN(64, instance.exports.laconic_web_hash(number)).toString(16).padStart(16, "0");
-  postMessage(line(0) + " " + line(1));
+  const lines = [];
+  for (let line = 0, bits; (bits = instance.exports.laconic_web_hash(line)); line++)
+    lines.push(BigInt.asUintN(64, bits).toString(16).padStart(16, "0"));
+  postMessage(lines.join(" "));
 };`;
 
 /** Shows whether they are equal. */

@@ -14,9 +14,15 @@ const REPLAY_STEPS = 2e6; // more are not computed anew when a number changes
 
 /** @typedef {{robot: any, path: number[], scene: any}} Actor */
 
+/** The core's methods from the highest order to the lowest; auto, which takes every robot, is the last. */
+function mostAccurateFirst(/** @type {any} */ laconic) {
+  const names = [...laconic.methods].sort((a, b) => b.order - a.order).map(({ name }) => name);
+  return [...names.filter((name) => name !== "auto"), "auto"];
+}
+
 /** The core's most accurate method that takes this robot, in fine steps. */
 export function referenceOf(/** @type {any} */ laconic, /** @type {any} */ scene, /** @type {number} */ step_s) {
-  for (const method of ["taylor-8", "exact-flow-4", "auto"])
+  for (const method of mostAccurateFirst(laconic))
     try {
       return { robot: laconic.robot(plain(scene), { method, step_s }), method };
     } catch {

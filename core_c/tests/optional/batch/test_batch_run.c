@@ -50,6 +50,37 @@ static void panels_of_neighbours_have_the_bits_of_one_vehicle(void) {
     }
 }
 
+/* Beside lanes of methods that registers know; a user may write such a method, too. */
+static void lanes_of_a_method_that_registers_do_not_know_have_the_bits_of_one_vehicle(void) {
+    static const int32_t widths[4] = {1, 16, 32, 64};
+    const laconic_method own = laconic_rk4;
+    for (int w = 0; w < 4; w++) {
+        if (laconic_batch_width(widths[w]) == 0) continue;
+        all.random = 6;
+        all.steps = all.refused = 0;
+        for (int k = 0; k < KINDS; k++) {
+            laconic_refusal why;
+            const laconic_vehicle v = with_motors(three_wheels());
+            const laconic_method *const methods[3] = {&own, &laconic_auto, &laconic_rk4};
+            ASSERT_STATUS(LACONIC_OK, laconic_batch_kind_of(&all.kinds[k], &v, methods[k % 3], REAL(0.01), &why));
+        }
+        for (int i = 0; i < LANES; i++) all.kind_of[i] = i % KINDS;
+        place(&all, widths[w]);
+        for (int i = 0; i < LANES; i++) {
+            all.states[i] = moving(&all.kinds[all.kind_of[i]].model, 3, -2, 0.05 * i);
+            laconic_batch_load(&all.batch, i, &all.states[i]);
+            all.missed[i] = 0;
+        }
+        for (int i = 0; i < 6; i++) step_and_compare(&all);
+        TEST_ASSERT_TRUE(all.steps > 3 * LANES && all.refused > 0);
+        for (int i = 0; i < LANES; i++) {
+            const laconic_state *state = &all.states[i];
+            TEST_ASSERT_TRUE(state->x_m.value == laconic_batch_row_of(&all.batch, LACONIC_BATCH_X, 0)[i]);
+            TEST_ASSERT_TRUE(state->y_m.value == laconic_batch_row_of(&all.batch, LACONIC_BATCH_Y, 0)[i]);
+        }
+    }
+}
+
 static void heading_and_nu_are_those_of_the_state(void) {
     fill(&all, 0);
     laconic_batch_observe(&all.batch, 0, all.batch.block_count);
@@ -144,6 +175,7 @@ int main(int argc, char **argv) {
     RUN_TEST(lanes_have_the_bits_of_one_vehicle_in_32_bytes);
     RUN_TEST(lanes_have_the_bits_of_one_vehicle_in_64_bytes);
     RUN_TEST(panels_of_neighbours_have_the_bits_of_one_vehicle);
+    RUN_TEST(lanes_of_a_method_that_registers_do_not_know_have_the_bits_of_one_vehicle);
     RUN_TEST(heading_and_nu_are_those_of_the_state);
     RUN_TEST(rows_are_the_inputs_of_lanes);
     RUN_TEST(sampled_voltages_are_those_of_a_run_for_each_sample);

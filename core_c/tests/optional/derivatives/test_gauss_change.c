@@ -1,4 +1,4 @@
-/* Tests of derivatives of exponential-gauss-8 where an input turns the vehicle by radians within a step, so that the
+/* Tests of derivatives of collocation at Gauss' points where an input turns the vehicle by radians within a step, so that the
  * rounds end before they have settled: they are of the step as it is; and of the room that its weights take.
  * test_step_derivatives.c has the usual steps. */
 #include "gauss_weight_change.h"

@@ -1,6 +1,6 @@
 /* Tests of tangent, adjoint and Jacobian where only a part is asked for or acts: a gradient without others, a slope
  * along one axis, wheels that are not there. test_step_derivatives.c compares with differences of the step. */
-#include "laconic/derivatives.h"
+#include "derived.h"
 #include "stiff.h"
 
 #define CLOSE EITHER(1e-12, 1e-4)
@@ -43,7 +43,7 @@ static laconic_state_change some_change(void) {
 static void a_gradient_by_the_input_needs_none_by_the_model(void) {
     const laconic_input held = without_world_force();
     const laconic_state_change after = some_change();
-    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++) {
+    FOR_EACH_DERIVED (number) {
         const robot r = robot_by(laconic_method_by_number(number), with_wheels(4));
         laconic_state_change before, alone;
         laconic_input input, input_alone;
@@ -66,7 +66,7 @@ static void a_gradient_by_the_input_needs_none_by_the_model(void) {
 static void a_slope_changes_a_step_as_a_force_at_the_centre_of_mass_does(void) {
     const laconic_input held = no_input();
     const laconic_state_change none = {{0}, 0, 0, 0, {0}};
-    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+    FOR_EACH_DERIVED (number)
         for (int k = 0; k < 2; k++) {
             const robot r = robot_by(laconic_method_by_number(number), with_wheels(4));
             laconic_state_change by_slope = none, by_force = none;

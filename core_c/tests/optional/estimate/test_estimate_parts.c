@@ -4,7 +4,7 @@
 
 static laconic_refusal why;
 
-/* Damping is fast: half steps of exact-flow err nearly as much as the step. */
+/* Damping is fast: half steps of a splitting err nearly as much as the step. */
 static laconic_vehicle stiff_wheels(void) {
     laconic_vehicle v = with_motors(three_wheels());
     v.motor_damping_Nms = REAL(100 * DAMPING);

@@ -35,7 +35,7 @@ static void wheels_that_prevent_every_motion_are_refused(void) {
                    "this vehicle cannot start: wheel_kind: fixed and locked wheels prevent every motion");
 }
 
-/* With method rk4 no step that the importer chooses later is refused at the start; one of its own is. */
+/* With an explicit method no step that the importer chooses later is refused at the start; one of its own is. */
 static void an_own_step_is_checked_at_the_start(void) {
     set_integer("method", 0, 1);
     set("step_s", 0, 100);
@@ -48,7 +48,7 @@ static void an_own_step_is_checked_at_the_start(void) {
 static void a_change_before_the_first_step_is_for_any_step(void) {
     set_integer("method", 0, 1);
     initialise();
-    set("motor_damping_Nms", 0, 1e6); /* rk4 of a step of 1 s would be unstable */
+    set("motor_damping_Nms", 0, 1e6); /* an explicit step of 1 s would be unstable */
     set("voltage_V", 1, 2);
     TEST_ASSERT_TRUE(get("x_m", 0) == 0);
     ASSERT_DISCARDED(step(0, 1), "is unstable with this method because the motors damp too fast");

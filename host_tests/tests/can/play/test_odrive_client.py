@@ -17,6 +17,7 @@ from laconic.can.rig.boards import emulated_node, why_no_emulation
 from laconic.can.rig.lockstep import start_of
 from laconic.can.rig.parameters import parameters_of
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 
 odrive_can = pytest.importorskip("odrive_can", reason="odrive-can needs Python 3.11")
 from odrive_can.odrive import CanMsg, DriveError, ODriveCAN  # noqa: E402
@@ -241,7 +242,7 @@ def test_odrive_can_drives_a_board_that_has_no_other_protocol():
         drive.stop()
         return speed
 
-    scene = played(read_scene(SCENE).with_run(real="single", method="rk4", step_s=0.005))
+    scene = played(read_scene(SCENE).with_run(real="single", method=EXPLICIT, step_s=0.005))
     twin = scene.plant(scene.core())
     with emulated_node("an386-odrive") as client:
         client.open()

@@ -15,6 +15,7 @@ from laconic.can.play.node_vehicle import remedy
 from laconic.can.play.options import PlayOptions
 from laconic.can.play.session import play
 from laconic.can.play.vehicle import coasts_for_ever
+from laconic.can.rig import lockstep
 from laconic.can.rig.buses import VirtualClock, node_process, open_bus
 from laconic.can.rig.client import Identity
 from laconic.can.rig.errors import NodeRefused
@@ -24,6 +25,7 @@ from laconic.can.rig.wire import ID_BASE
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT, EXPLICIT_8
 from play_support import DBC, PLAY, Codec, currents, played
 
 WATCHED = '\n[rig.drives]\nprotocol = "robomaster"\nwatchdog_s = 0.1\n'
@@ -140,11 +142,19 @@ def test_nothing_is_said_about_a_port_before_the_scene_has_been_taken(capsys: py
 
 
 def test_a_node_with_another_scalar_type_and_one_method_names_all_that_it_needs() -> None:
-    scene = read_scene("robotino2").with_run(method="taylor-8")
+    scene = read_scene("robotino2").with_run(method=EXPLICIT_8)
     node = Identity("0.1.0", "single", 4, 1 << 1, False, 2)
-    with pytest.raises(BadInput, match=r"the node computes in single; its method is taylor-8, the node has rk4; "
-                                       r"give --real single --method rk4"):
+    with pytest.raises(BadInput, match=rf"the node computes in single; its method is {EXPLICIT_8}, the node has "
+                                       rf"{EXPLICIT}; give --real single --method {EXPLICIT}"):
         check_run(node, scene, scene.plant(scene.core()))
+
+
+def test_a_method_that_has_no_bit_in_the_identity_is_left_to_the_node(monkeypatch: pytest.MonkeyPatch) -> None:
+    """IDENTITY.methods has eight bits; COMMIT refuses a later method that the node does not have."""
+    scene = read_scene("robotino2")
+    plant = scene.plant(scene.core())
+    monkeypatch.setattr(lockstep, "method_number", lambda core, method: 8)
+    check_run(Identity("0.1.0", "double", 4, 1 << 1, False, 2), scene, plant)
 
 
 def test_what_an_image_leaves_out_is_named_by_its_field() -> None:

@@ -27,6 +27,7 @@ from laconic.can.rig.parameters import Parameter, parameters_of
 from laconic.can.rig.wire import ID_BASE
 from laconic.core.plant import Plant
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 
 PAGE = (SOURCE_DIR / "docs" / "play-robomaster.md").read_text(encoding="utf-8")
 
@@ -215,7 +216,7 @@ def test_the_controller_of_the_page_drives_a_process_and_a_board_that_has_no_oth
 
     How many periods that takes depends on how late this process answers.
     """
-    scene = played(read_scene("robomaster_mecanum").with_run(real=real, method="rk4", step_s=0.005))
+    scene = played(read_scene("robomaster_mecanum").with_run(real=real, method=EXPLICIT, step_s=0.005))
     twin = scene.plant(scene.core())
     with own_node(kind, real) as client:
         client.open()

@@ -17,6 +17,7 @@ from laconic.can.rig.wire import wire
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene, read_scene
 from laconic.scene.ground import has_friction
+from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.tools.report.node_sizes import cost_of
 from laconic.tools.trim import needs_of
 
@@ -71,7 +72,7 @@ def test_a_board_that_has_just_been_started_loads_a_vehicle_at_once(name: str, b
 def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(name: str) -> None:
     """A long SYNC keeps it busy while twelve times its ring arrives at once; the checksum counts what it has read."""
     with emulated_node(name) as node:
-        load_scene(node, read_scene("s1").with_run(real=BOARDS[name].real, method="rk4"))
+        load_scene(node, read_scene("s1").with_run(real=BOARDS[name].real, method=EXPLICIT))
         node.start_lockstep()
         lines, link = [], node.link
         link.send_message = lambda m: lines.append(f"t{m.arbitration_id:03X}8{bytes(m.data).hex()}\r")
@@ -95,7 +96,7 @@ def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(nam
 
 def test_the_small_image_gives_the_bits_of_the_host_core_with_its_one_method() -> None:
     with emulated_node("an386-small") as node:
-        scenes = [read_scene(n).with_run(real="single", method="rk4") for n in scene_names()]
+        scenes = [read_scene(n).with_run(real="single", method=EXPLICIT) for n in scene_names()]
         scenes = [scene for scene in scenes if fits_small_image(scene) and rk4_can(scene)]
         assert len(scenes) >= 3
         for scene in scenes:
@@ -114,8 +115,9 @@ def test_one_command_and_one_answer_a_step_run_at_150_steps_a_second_or_more() -
 
 
 def test_a_board_without_the_scenes_method_names_the_remedy() -> None:
-    scene = read_scene("kuka_youbot").with_run(real="single", method="exact-flow")
-    with emulated_node("an386-small") as node, pytest.raises(BadInput, match="has rk4; give --method rk4"):
+    scene = read_scene("kuka_youbot").with_run(real="single", method=EXACT)
+    remedy = f"has {EXPLICIT}; give --method {EXPLICIT}"
+    with emulated_node("an386-small") as node, pytest.raises(BadInput, match=remedy):
         run_lockstep(node, scene, 10)
 
 
@@ -138,4 +140,4 @@ def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_sma
 @pytest.mark.parametrize("name", [name for name, board in BOARDS.items() if board.plays_only])
 def test_an_image_that_only_plays_drives_says_that_it_has_no_lockstep(name: str) -> None:
     with emulated_node(name) as node, pytest.raises(NodeRefused, match="not supported"):
-        run_lockstep(node, read_scene("kuka_youbot").with_run(real="single", method="rk4"), 10)
+        run_lockstep(node, read_scene("kuka_youbot").with_run(real="single", method=EXPLICIT), 10)

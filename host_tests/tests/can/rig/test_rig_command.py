@@ -24,6 +24,7 @@ from laconic.can.rig.scaled import run_scaled
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
 from laconic.scene import read_scene
+from laconic.scene.methods import EXACT_4
 from scene_text import wheel
 
 NU = wire()["NU"].offset
@@ -61,8 +62,7 @@ frequency_Hz = 3.0
 [run]
 duration_s = 1.0
 step_s = 0.001
-method = "exact-flow-4"
-"""
+""" + f'method = "{EXACT_4}"\n'
 
 
 @pytest.mark.parametrize("real", ["double", "single"])

@@ -20,13 +20,14 @@ from laconic.can.rig.wire import wire
 from laconic.cli.main import run as run_command
 from laconic.core import REALS
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXACT, EXPLICIT
 
 STEPS = 300
 
 
 def estimated_scene(real: str = "double", name: str = "robotino2") -> Scene:
     """One whose errors are far from rounding, with the estimate among its frames."""
-    scene = read_scene(name).with_run(real=real, method="exact-flow", step_s=0.02)
+    scene = read_scene(name).with_run(real=real, method=EXACT, step_s=0.02)
     return replace(scene, rig=replace(scene.rig, frames=("NU", "ERROR_ESTIMATE")))
 
 
@@ -117,7 +118,7 @@ def test_a_node_of_another_process_sends_it() -> None:
 @pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 def test_an_image_that_has_none_refuses_it() -> None:
     with emulated_node("an386-small") as node:
-        load_scene(node, read_scene("robotino2").with_run(real="single", method="rk4"))
+        load_scene(node, read_scene("robotino2").with_run(real="single", method=EXPLICIT))
         with pytest.raises(NodeRefused) as refused:
             node.select(send_nu=1, send_error_estimate=1)
         assert (refused.value.command, refused.value.status) == ("select", "not supported")

@@ -18,6 +18,7 @@ from laconic.can.rig.parameters import parameters_of
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.scene import Scene
+from laconic.scene.methods import EXPLICIT
 
 
 @pytest.mark.parametrize("real", REALS)
@@ -82,7 +83,7 @@ def test_a_node_refuses_by_name_what_ground_and_drive_cannot_be(
 
 @pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 @pytest.mark.parametrize(("board", "words"), [
-    ("an386-small", "ground friction or a drive's limits need auto, the node has rk4 alone; use another node"),
+    ("an386-small", f"ground friction or a drive's limits need auto, the node has {EXPLICIT} alone; use another node"),
     ("microbit", "not supported, ground friction")])
 def test_an_image_without_friction_refuses_it_by_name(board: str, words: str, tmp_path: Path) -> None:
     scene = skid_steering(tmp_path).with_run(real="single")

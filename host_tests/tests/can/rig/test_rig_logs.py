@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -78,3 +79,27 @@ def test_a_log_is_read_back_frame_by_frame_in_each_format(tmp_path: Path) -> Non
     frames = [[(m.arbitration_id, m.arbitration_id != OPEN and bytes(m.data[2:])) for m in read_log(path)]
               for path in (recorded(tmp_path, suffix) for suffix in LOGS)]
     assert len(frames[0]) > 160 and all(each == frames[0] for each in frames)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
+@pytest.mark.parametrize("kind", ["asc", "blf"])
+@pytest.mark.parametrize("mode", [[], ["--same-bits"], ["--free-run", "--watchdog", "0"]])
+def test_a_log_that_takes_no_more_bytes_costs_neither_verdicts_nor_junit(
+        kind: str, mode: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log, junit = tmp_path / f"full.{kind}", tmp_path / "results.xml"
+    log.symlink_to("/dev/full")
+    assert run(["rig", "robotino2", *mode, "--steps", "400", "--log", str(log), "--junit", str(junit), "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert found["figures"]["last_step"] >= found["figures"]["steps_wanted"] - ("--free-run" in mode)  # it began at 0
+    failed = [each for each in found["verdicts"] if not each["passed"]]
+    assert len(found["verdicts"]) > 1 and [each["name"] for each in failed] == ["log"]
+    assert f"--log {log}: cannot be written (no space left on device)" in failed[0]["detail"]
+    suite = ElementTree.parse(junit).getroot()
+    assert suite.get("failures") == "1" and suite.get("tests") == str(len(found["verdicts"]))
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
+def test_a_junit_file_that_cannot_be_written_leaves_the_verdicts_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["rig", "robotino2", "--steps", "5", "--junit", "/dev/full", "--json"]) == 2
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["passed"] and "/dev/full: cannot be written" in printed.err.splitlines()[-1]

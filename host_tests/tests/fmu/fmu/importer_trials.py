@@ -22,7 +22,7 @@ STEP_S, STEPS = 0.01, 300
 VOLTAGE_V = (6.0, -4.0, 3.0)
 NAMES = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad")
 METHOD = 1
-"""rk4, set by the importer where it can; the FMU has it already."""
+"""An explicit one, set by the importer where it can; the FMU has it already."""
 
 
 @dataclass(frozen=True)

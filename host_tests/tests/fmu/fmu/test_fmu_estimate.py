@@ -19,6 +19,7 @@ from laconic.core.estimate import NAMES
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
+from laconic.scene.methods import EXACT, STIFF_8
 from laconic.tools.enclosure.readings import reading_of_file
 from laconic.tools.enclosure.study import enclose
 from moving_carriage import MOVING_CARRIAGE
@@ -47,8 +48,7 @@ value = [5.0]
 [run]
 duration_s = 1.0
 step_s = 0.02
-method = "exact-flow"
-"""
+""" + f'method = "{EXACT}"\n'
 
 
 @pytest.fixture(scope="module")
@@ -192,7 +192,7 @@ def test_a_refused_step_leaves_the_estimate_as_it_was(started: Importer) -> None
 
 def fine_states(scene: Path, begin_s: float, load_kg: float, more_s: float) -> np.ndarray:
     """The states by eighth order, with a payload from a time on."""
-    given = read_scene(scene).with_run(method="exponential-gauss-8", step_s=0.001)
+    given = read_scene(scene).with_run(method=STIFF_8, step_s=0.001)
     plant = given.plant(load("double"))
     plant.run({"voltage_V": VOLTS}, steps=round(begin_s / 0.001))
     if load_kg:

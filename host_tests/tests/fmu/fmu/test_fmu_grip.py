@@ -11,6 +11,7 @@ from fmu_importer import DISCARD, OK, WARNING, Importer, generic
 from laconic.core import load
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.demo.fmu_rows import fmu_rows
 
 BOTH = pytest.mark.parametrize("version", [2, 3])
@@ -149,7 +150,7 @@ def test_slopes_within_a_step_are_judged_too() -> None:
 
 
 def test_the_fmu_reports_what_simulate_reports(tmp_path: Path) -> None:
-    scene = read_scene("robotino2").with_run(method="rk4", step_s=0.01)
+    scene = read_scene("robotino2").with_run(method=EXPLICIT, step_s=0.01)
     plant, core = scene.plant(load("double")), load("double")
     voltage = (6.0, -4.0, 3.0)
     reactions = plant.reactions(core.input({f"voltage_V[{i + 1}]": value for i, value in enumerate(voltage)}))

@@ -25,6 +25,7 @@ from laconic.core import load
 from laconic.fmu import make_fmu
 from laconic.fmu.ssp import make_controller
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 
 PAGE = (SOURCE_DIR / "docs" / "fmu-importers.md").read_text(encoding="utf-8")
 VARIANTS = {"`--fmi 2`": ("fmi2", {"version": 2}),
@@ -52,7 +53,7 @@ def is_here(trial: Trial) -> bool:
 @pytest.fixture(scope="module")
 def scene() -> Scene:
     """Robotino, driven by constant voltages."""
-    return read_scene("robotino2").with_run(method="rk4", step_s=STEP_S)
+    return read_scene("robotino2").with_run(method=EXPLICIT, step_s=STEP_S)
 
 
 @pytest.fixture(scope="module")

@@ -20,6 +20,7 @@ from laconic.base.paths import scene_names
 from laconic.cli.main import run
 from laconic.fmu import make_fmu, start_values
 from laconic.scene import read_scene
+from laconic.scene.methods import METHODS
 from laconic_fmu.archive import MOST_ROWS, output_step, read_parts
 from laconic_fmu.icon import BLUE, ORANGE, RED, SIZE, icon_png, icon_svg
 
@@ -154,8 +155,9 @@ def test_without_enumerations_the_numbers_are_whole_numbers_with_their_meaning(
     with Importer(fmu) as importer, Importer(usual) as other:
         kinds = {variable.type for variable in importer.variables.values()}
         assert kinds <= {"Real", "Integer", "Boolean", "Float64", "Int64", "Int32", "UInt64"}
-        assert "0 auto, 1 rk4, 2 exponential-kahan" in importer.variables["method"].description
-        assert (int(importer.variables["method"].min), int(importer.variables["method"].max)) == (0, 7)
+        meaning = ", ".join(f"{number} {name}" for number, name in enumerate(METHODS))
+        assert importer.variables["method"].description.endswith(f": {meaning}")
+        assert (int(importer.variables["method"].min), int(importer.variables["method"].max)) == (0, len(METHODS) - 1)
         first = importer.elements("wheel_kind")[0][0]
         assert importer.variables[first].start.split() == ["2"] * (1 if scalar or version == 2 else 2)
         assert importer.set("method", 8) == ERROR

@@ -9,6 +9,7 @@ from itertools import pairwise
 import pytest
 
 from laconic.base.paths import build_dir, scene_names
+from laconic.scene.methods import EXPLICIT, STIFF_4
 from laconic_build.page.browser import Browser
 
 PAGE = build_dir() / "page/laconic.html"
@@ -189,7 +190,7 @@ def test_methods_and_steps_take_the_same_drive_with_their_own_error(page):
     page.choose("forward", "0.3")
     page.choose("turn", "1")
     step(page, 9)
-    page.choose("method", "exponential-kahan-4")
+    page.choose("method", STIFF_4)
     errors = {}
     for step_s in ("0.001", "0.01", "0.05", "0.1"):
         page.choose("step-size", step_s)
@@ -206,7 +207,7 @@ def test_methods_and_steps_take_the_same_drive_with_their_own_error(page):
 
 def test_what_a_method_cannot_take_is_told_beside_it_in_the_cores_words(page):
     page.choose("robot", "turtlebot3_burger")
-    page.choose("method", "rk4")
+    page.choose("method", EXPLICIT)
     page.choose("step-size", "0.1")
     assert page.text("method-error").startswith("0.1 s is unstable with this method because the motors damp too fast")
     page.choose("step-size", "0.001")

@@ -25,11 +25,13 @@ def test_each_function_on_the_way_of_a_voltage_is_defined_in_its_file() -> None:
 
 
 def test_every_file_and_c_name_that_the_page_mentions_exists() -> None:
-    sources = [path for part in ("core_c", "fmu", "firmware_stub", "python", "packaging") for path in (ROOT / part).rglob("*")]
+    parts = ("core_c", "fmu", "firmware_stub", "python", "packaging")
+    sources = [path for part in parts for path in (ROOT / part).rglob("*")]
     files = {path.name for path in sources} | {path.name for path in ROOT.iterdir()}
     names = {name.rpartition("/")[2] for name in re.findall(r"`([\w/.]+\.(?:c|h|py|xml|dbc|md))`", PAGE)}
     assert {name for name in names if "NAME" not in name} - files == set()
-    words = set(re.findall(r"\w+", "\n".join(path.read_text(encoding="utf-8") for path in sources if path.suffix in (".c", ".h"))))
+    in_c = [path.read_text(encoding="utf-8") for path in sources if path.suffix in (".c", ".h")]
+    words = set(re.findall(r"\w+", "\n".join(in_c)))
     packages = {path.name for path in ROOT.glob("p*/laconic*")}
     assert set(re.findall(r"`((?:laconic|fmu|fmi\d|LACONIC)_?\w+)`", PAGE)) - words - packages == set()
 

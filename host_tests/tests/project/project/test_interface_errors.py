@@ -14,6 +14,7 @@ import laconic
 import laconic.batch.memory
 from laconic.base.outputs import write_text
 from laconic.errors import BadInput
+from laconic.scene.methods import EXPLICIT
 
 ROBOT = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
 MOTOR = {"resistance_ohm": 1.0, "torque_constant_Nm_per_A": 0.02, "back_emf_Vs_per_rad": 0.02, "gear_ratio": 12.0}
@@ -29,7 +30,7 @@ def core() -> Any:
 
 
 def plant() -> Any:
-    return core().plant(core().vehicle(ROBOT), "rk4", 0.01)
+    return core().plant(core().vehicle(ROBOT), EXPLICIT, 0.01)
 
 
 def wheels() -> laconic.Vehicle:
@@ -155,7 +156,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
       for key in ("scalar", "sources", "enumerations", "derivatives", "estimate") for no in ("no", float("nan"), 0)),
     *((lambda key=key: laconic.simulate(scene(), **{key: "no"}), f"{key}: 'no' is neither True nor False")
       for key in ("progress", "watched", "estimated")),
-    (lambda: laconic.read_scene("/dev/zero"), "/dev/zero: has more than 64 MiB, which no scene needs; give the"),
+    (lambda: laconic.read_scene("/dev/zero"), "/dev/zero: has more than 16 MiB, which no scene needs; give the"),
     (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "unset"}]}), "known are fixed, mecanum, omni, roller"),
     (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "mecanum"}]}),
      "vehicle.wheel[1].roller_rad: is missing; give the angle between axle and rollers, such as 0.785398 (45°)"),
@@ -165,9 +166,9 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: plant().set_step("x"), "step_s: 'x' is no number"),
     (lambda: plant().change(ROBOT), "is no laconic_vehicle of this core; make it with laconic.Vehicle("),
     (lambda: plant().restore(None, 3), "state: None is no laconic_state of this core; make it with plant.save()"),
-    (lambda: core().plant(ROBOT, "rk4", 0.01), "is no laconic_vehicle of this core"),
+    (lambda: core().plant(ROBOT, EXPLICIT, 0.01), "is no laconic_vehicle of this core"),
     (lambda: core().plant(core().vehicle(ROBOT), None, 0.01), "method: there is no None"),
-    (lambda: core().plant(core().vehicle(ROBOT), "rk4", 0.01, nu_rad_per_s=(1, 2)), "nu_rad_per_s: (1, 2) is no list"),
+    (lambda: core().plant(core().vehicle(ROBOT), "auto", 0.01, nu_rad_per_s=(1, 2)), "nu_rad_per_s: (1, 2) is no list"),
     (lambda: core().input([1, 2]), "input: [1, 2] is no mapping from signals to numbers"),
     (lambda: laconic.analyse(scene(), parts="geometry"), "parts: 'geometry' is one text; give a list, such as ["),
     (lambda: short_run().columns_of("wheel_sped"), "wheel_sped: there is no such signal; did you mean wheel_speed"),
@@ -226,7 +227,7 @@ def test_a_vehicle_is_taken_wherever_one_is_asked_for() -> None:
     assert moving.c.vehicle.mass_kg == 30.0
     core().check_vehicle(robot)
     assert core().matrices(robot).inertia.tolist() == robot.matrices().inertia.tolist()
-    assert core().plant(robot, "rk4", 0.01).wheel_count == core().prepare(robot).wheel_count == 3
+    assert core().plant(robot, EXPLICIT, 0.01).wheel_count == core().prepare(robot).wheel_count == 3
 
 
 def test_a_batch_that_memory_does_not_hold_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:

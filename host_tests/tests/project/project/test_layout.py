@@ -14,7 +14,8 @@ from laconic.base.paths import SOURCE_DIR
 C_TESTS = sorted(path for part in ("core_c", "fmu", "firmware_stub") for path in (SOURCE_DIR / part).rglob("test_*.c"))
 
 
-@pytest.mark.skipif(not (SOURCE_DIR / ".git").exists() or shutil.which("git") is None, reason="needs a checkout, and git")
+@pytest.mark.skipif(not (SOURCE_DIR / ".git").exists() or shutil.which("git") is None,
+                    reason="needs a checkout, and git")
 def test_the_rules_of_contributing_hold() -> None:
     script = SOURCE_DIR / "host_tests" / "assurance" / "rules.py"
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True)
@@ -34,8 +35,9 @@ def test_a_program_that_steps_with_one_method_holds_no_other_and_no_refusals(tmp
     sections = ["-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections"]
     core = SOURCE_DIR / "core_c"
     folders = [core / "include", *(path for path in (core / "src").iterdir() if path.is_dir())]
-    subprocess.run(["gcc", "-std=c99", *sections, "-DLACONIC_WITH_PREPARE=0", *(f"-I{path}" for path in folders), "main.c",
-                    *sorted(map(str, (core / "src").rglob("*.c"))), "-o", "program"], cwd=tmp_path, check=True)
+    subprocess.run(["gcc", "-std=c99", *sections, "-DLACONIC_WITH_PREPARE=0", *(f"-I{path}" for path in folders),
+                    "main.c", *sorted(map(str, (core / "src").rglob("*.c"))), "-o", "program"],
+                   cwd=tmp_path, check=True)
     names = subprocess.run(["nm", "program"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     functions = set(re.findall(r" [tT] (\w+)", names))
     assert {"laconic_step", "rk4_step"} <= functions

@@ -15,7 +15,8 @@ from laconic.base.paths import SOURCE_DIR
 
 PAGE = (SOURCE_DIR / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
-PACKAGES = [SOURCE_DIR / "python" / "laconic", SOURCE_DIR / "python" / "laconic_fmu", SOURCE_DIR / "packaging" / "laconic_build"]
+PACKAGES = [SOURCE_DIR / "python" / "laconic", SOURCE_DIR / "python" / "laconic_fmu",
+            SOURCE_DIR / "packaging" / "laconic_build"]
 FILES = [path for package in PACKAGES for path in sorted(package.rglob("*.py"))]
 
 

@@ -33,8 +33,8 @@ OF_THE_READER = {"my.toml": "scenes/kuka_youbot.toml", "robot.urdf": ("docs/tuto
 """Files that pages call by these names: a file of the project, or a page's first snippet in a language."""
 KNOWN = "".join((SOURCE_DIR / "python" / name).read_text(encoding="utf-8") for name in (
     "requirements.in", "requirements-peers.in"))
-SLOW = {"scenes", "optimise", "control", "rig", "how-to", "play-odrive", "play-robomaster", "play-canopen", "rig-wiring", "sweep",
-        "enclosures"}
+SLOW = {"scenes", "optimise", "control", "rig", "how-to", "play-odrive", "play-robomaster", "play-canopen",
+        "rig-wiring", "sweep", "enclosures"}
 """Pages whose snippets take more than some seconds."""
 PAGES_THAT_RUN = [pytest.param(page, id=str(page.relative_to(SOURCE_DIR)),
                                marks=[pytest.mark.nightly] if page.stem in SLOW else [])

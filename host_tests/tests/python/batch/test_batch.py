@@ -10,6 +10,7 @@ import pytest
 
 import laconic
 from laconic.core import load
+from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT
 
 ROOT = Path(__file__).parents[4]
 PAGE = (ROOT / "docs/batch.md").read_text(encoding="utf-8")
@@ -44,7 +45,7 @@ def state_bytes(core, state) -> bytes:
 
 
 @pytest.mark.parametrize("real", ["double", "single"])
-@pytest.mark.parametrize("method", ["auto", "rk4"])
+@pytest.mark.parametrize("method", ["auto", EXPLICIT])
 def test_each_lane_is_the_plant_that_steps_alone(real, method):
     kinds = [robot(5.0 + k, real) for k in range(LANES)]
     batch = filled(laconic.Batch(kinds, method=method, step_s=0.01))
@@ -90,7 +91,7 @@ def test_arrays_are_views_of_the_memory_that_steps():
 
 
 def test_a_lane_that_is_refused_stays_and_tells_why_and_the_others_go_on():
-    batch = filled(laconic.Batch(robot(), LANES, "rk4", 0.01))
+    batch = filled(laconic.Batch(robot(), LANES, EXPLICIT, 0.01))
     batch.voltage_V[1, 7] = np.nan
     before = state_bytes(batch.core, batch.state(7))
     assert batch.run(10) == 1
@@ -195,8 +196,8 @@ def test_an_input_given_as_a_whole_is_written_into_the_memory_that_steps():
 
 
 @pytest.mark.parametrize(("method", "force_N", "nu", "point_m"), [
-    ("exact-flow", (-4.7, -1.1), (-6.6, -1.7, -5.3), (-0.2, 0.3)),
-    ("exact-flow-4", (8.9, -3.6), (3.7, -0.4, -5.2), (0.1, 0.0))])
+    (EXACT, (-4.7, -1.1), (-6.6, -1.7, -5.3), (-0.2, 0.3)),
+    (EXACT_4, (8.9, -3.6), (3.7, -0.4, -5.2), (0.1, 0.0))])
 def test_a_lane_that_leaves_the_usual_way_while_the_heading_at_a_steps_end_is_sought_has_its_bits(
         method, force_N, nu, point_m):  # noqa: N803
     """A force fixed in the world depends on that heading, which rounds find; the first may leave and the last not."""

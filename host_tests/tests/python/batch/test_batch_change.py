@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import laconic
+from laconic.scene.methods import EXPLICIT
 
 
 def robot(mass_kg: float = 8.0, real: str = "double", **more) -> laconic.Vehicle:
@@ -38,7 +39,7 @@ def test_what_a_lane_cannot_become_is_refused_and_the_lane_stays():
     with pytest.raises(laconic.BadInput, match="lane: 0 shares its kind"):
         crossed.change(0, crossed.prepared(robot(7.0)))
     with pytest.raises(laconic.BadInput, match="another way"):
-        batch.change(1, batch.prepared(robot(9.0), "rk4"))
+        batch.change(1, batch.prepared(robot(9.0), EXPLICIT))
     with pytest.raises(laconic.BadInput, match="no laconic_batch_kind of this core; make it with batch.prepared"):
         batch.change(1, robot())
     with pytest.raises(laconic.BadInput, match="vehicle: is of single precision"):

@@ -12,13 +12,17 @@ import sympy as sp
 
 from laconic.base.paths import SOURCE_DIR
 from laconic.core import load
+from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, EXPLICIT_8, ROWS, STIFF, STIFF_4, STIFF_8
 
 PAGE = (SOURCE_DIR / "docs" / "integrators.md").read_text(encoding="utf-8")
 DIGITS = 50
 TOLERANCE = 2e-14  # of the largest number of a state: some ten roundings
-METHODS = {"rk4": "rk4", "taylor-8": "taylor", "exponential-kahan": "kahan_increment", "exact-flow": "flow_base",
-           "exponential-kahan-4": "kahan_increment", "exact-flow-4": "flow_base", "exponential-gauss-8": "gauss"}
-OF_EIGHTH_ORDER = ("taylor-8", "exponential-gauss-8")  # their displacement is a quadrature of its own
+# Functions of the page that are not named as the method's identifier; two are of second order, and extrapolated, too.
+FUNCTIONS = {EXPLICIT_8: "taylor", STIFF: "kahan_increment", EXACT: "flow_base", STIFF_4: "kahan_increment",
+             EXACT_4: "flow_base", STIFF_8: "gauss"}
+SECOND_ORDER = {"kahan_increment", "flow_base"}
+METHODS = {row.name: FUNCTIONS.get(row.name, row.identifier) for row in ROWS[1:]}
+OF_EIGHTH_ORDER = [row.name for row in ROWS[1:] if row.order == 8]  # their displacement is a quadrature of its own
 # damping, step, wheels: hardly damped; damped beside the step (h r about 1.5, `stiff`); free; two fixed wheels
 CASES = {"weak": (0.02, 0.05, "omni"), "stiff": (0.3, 0.06, "omni"), "free": (0.0, 0.1, "omni"),
          "constrained": (0.1, 0.1, "fixed")}
@@ -95,9 +99,9 @@ class Case:
         names = self.names()
         exec(formulas(page), names)
         base, samples = names[METHODS[self.method]], (names["b0"], names["bm"], names["b1"])
-        if self.method in ("rk4", *OF_EIGHTH_ORDER):
+        if METHODS[self.method] not in SECOND_ORDER:
             delta, mean, slope = base(*samples)
-        elif self.method.endswith("-4"):
+        elif self.method in (STIFF_4, EXACT_4):
             delta, mean, slope = names["extrapolated"](base, *samples)
         else:
             delta, mean, slope = base(names["zeta"], names["h"], names["parabola"](*samples))
@@ -140,7 +144,7 @@ def test_the_pages_formulas_give_the_cores_step(method, name, sampled):
 @pytest.mark.parametrize("name", CASES)
 def test_the_equation_of_the_page_is_the_one_of_the_paper(name):
     """(4.7) with the matrices of the paper, against G ζ'."""
-    case = Case(name, "exact-flow", False)
+    case = Case(name, EXACT, False)
     names, core, c = case.names(), case.core, case.plant.c
     exec(formulas(PAGE), names)
     zeta_rate = names["zeta_rate"](names["zeta"], names["b0"])
@@ -154,7 +158,7 @@ def test_the_equation_of_the_page_is_the_one_of_the_paper(name):
     assert np.abs(by_page - matrices.inverse_inertia @ right).max() < 1e-12 * np.abs(by_page).max()
 
 
-@pytest.mark.parametrize("method, order", [("exact-flow", 2), ("exact-flow-4", 4)])
+@pytest.mark.parametrize("method, order", [(row.name, row.order) for row in ROWS if row.keeps == "EXACTLY"])
 def test_in_free_motion_exact_flow_has_zeta_to_rounding_and_pose_and_travel_to_its_order(method, order):
     def after(method: str, steps: int) -> tuple[np.ndarray, np.ndarray]:
         case = Case("free", method, False)
@@ -165,7 +169,7 @@ def test_in_free_motion_exact_flow_has_zeta_to_rounding_and_pose_and_travel_to_i
         return (np.array([each.value for each in state.zeta]),
                 np.array([pose.x_m, pose.y_m, pose.heading_rad, *(each.value for each in state.travel)]))
 
-    zeta, quadratures = after("taylor-8", 400)
+    zeta, quadratures = after(EXPLICIT_8, 400)
     errors = []
     for steps in (16, 32):
         found = after(method, steps)
@@ -175,12 +179,12 @@ def test_in_free_motion_exact_flow_has_zeta_to_rounding_and_pose_and_travel_to_i
 
 
 WRONG = {  # method → what is put instead of what
-    "rk4": ("2 * k2 + 2 * k3", "2 * k2 + 3 * k3"), "taylor-8": ("h / (n + 1)", "h / (n + 2)"),
-    "exponential-gauss-8": ("+ b - times(r, z0)", "+ b + times(r, z0)"),
-    "exponential-kahan": ("cross(x, w)) / 2", "cross(x, w)) / 3"),
-    "exact-flow": ("(1 - across * tangent)", "(1 + across * tangent)"),
-    "exponential-kahan-4": ("(mean - whole[1]) / 3", "(mean - whole[1]) / 4"),
-    "exact-flow-4": ("- times(p2, change)", "+ times(p2, change)"),
+    EXPLICIT: ("2 * k2 + 2 * k3", "2 * k2 + 3 * k3"), EXPLICIT_8: ("h / (n + 1)", "h / (n + 2)"),
+    STIFF_8: ("+ b - times(r, z0)", "+ b + times(r, z0)"),
+    STIFF: ("cross(x, w)) / 2", "cross(x, w)) / 3"),
+    EXACT: ("(1 - across * tangent)", "(1 + across * tangent)"),
+    STIFF_4: ("(mean - whole[1]) / 3", "(mean - whole[1]) / 4"),
+    EXACT_4: ("- times(p2, change)", "+ times(p2, change)"),
     "the pose": ("dot(yaw_rate, slope) / 12", "dot(yaw_rate, slope) / 6")}
 
 
@@ -188,8 +192,13 @@ WRONG = {  # method → what is put instead of what
 def test_a_wrong_formula_is_noticed(what):
     right, wrong = WRONG[what]
     assert PAGE.count(right) == 1
-    case = Case("weak", what if what in METHODS else "rk4", True)
+    case = Case("weak", what if what in METHODS else EXPLICIT, True)
     assert case.difference(PAGE.replace(right, wrong)) > 1e3 * TOLERANCE
+
+
+def test_the_table_of_the_page_has_every_method_with_its_order():
+    rows = dict(re.findall(r"^\| `([\w-]+)` \| (\d) \|", PAGE, re.MULTILINE))
+    assert rows == {row.name: str(row.order) for row in ROWS}
 
 
 def test_every_formula_of_the_page_is_run():

@@ -14,6 +14,7 @@ from laconic.cli.main import run
 from laconic.core import load
 from laconic.errors import BadInput
 from laconic.scene import read_scene
+from laconic.scene.methods import EXACT_4, EXPLICIT, EXPLICIT_8, STIFF_4
 from laconic.tools.analyse.from_core import nu_rates, subject_of
 from laconic.tools.analyse.geometry import diagnose
 from laconic.tools.verify.reference import reference_states
@@ -89,7 +90,7 @@ def test_the_damping_rates_are_the_eigenvalues_of_damping_against_inertia() -> N
 def test_a_run_agrees_with_the_independent_reference_in_every_method() -> None:
     scene = read_scene(SCENE)
     expected = reference_states(scene, np.array([scene.run.duration_s]))[0]
-    for method in ("rk4", "exponential-kahan-4", "exact-flow-4", "taylor-8", "auto"):
+    for method in (EXPLICIT, STIFF_4, EXACT_4, EXPLICIT_8, "auto"):
         plant = scene.with_run(method=method, step_s=0.001).plant(load("double"))
         inputs = scene.with_run(step_s=0.001).inputs_on_grid()
         for segment in inputs.segments():

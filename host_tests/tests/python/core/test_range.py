@@ -10,6 +10,7 @@ import pytest
 
 import laconic
 from laconic.core.saved import check_saved
+from laconic.scene.methods import EXPLICIT
 
 HUGE = {"voltage_V": [1e308] * 3}
 TORQUES = {"axle_torque_Nm": [1.7e308] * 3, "voltage_V": [1.7e308] * 3}
@@ -115,10 +116,10 @@ def test_a_saved_plant_of_another_number_of_wheels_or_without_friction_is_not_re
 
 def test_a_state_of_a_batch_of_the_robot_is_restored() -> None:
     cart = robot(CART)
-    batch = laconic.Batch(cart, 3, "rk4", 0.001)
+    batch = laconic.Batch(cart, 3, EXPLICIT, 0.001)
     batch.voltage_V = np.array([[1.0, 2, 3], [3, 2, 1]])
     batch.run(20)
-    plant = cart.plant("rk4", 0.001)
+    plant = cart.plant(EXPLICIT, 0.001)
     plant.restore(batch.state(2), 20)
     assert plant.pose.x_m == batch.x_m[2] != 0.0
 

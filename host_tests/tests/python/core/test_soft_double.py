@@ -50,8 +50,8 @@ def test_self_test_and_check_double_find_what_libgcc_rounds_wrongly_and_nothing_
 def test_it_makes_double_precision_sound_on_a_cortex_m4f_and_trajectories_have_this_machines_bits(tmp_path: Path):
     program = tmp_path / "hash"
     run_tool(["gcc", "-O0", "-ffp-contract=off", f"-DSTEPS={STEPS}", "-I", str(built("amalgamation")), "-I",
-              str(CORE / "include"), str(CORE / "tests" / "bits" / "trajectory_hash.c"), str(built("amalgamation/laconic.c")),
-              "-o", str(program)])
+              str(CORE / "include"), str(CORE / "tests" / "bits" / "trajectory_hash.c"),
+              str(built("amalgamation/laconic.c")), "-o", str(program)])
     hashes = [f"hash {line}" for line in run_tool([str(program)]).split()]
     assert hashes and board_lines(M4F, tmp_path, steps=STEPS) == ["sound", "double: sound", *hashes]
 

@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import sys
+from typing import Any
+
 import numpy as np
 import pytest
 
 import laconic
+from laconic.base.paths import SCENE_DIR
+from laconic.scene.methods import EXPLICIT
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 CARRIAGE = {
     "mass_kg": 10.3, "yaw_inertia_kgm2": 0.231, "com_x_m": 0.013, "com_y_m": 0.021, "wheel_radius_m": 0.051,
@@ -28,7 +38,7 @@ def rates(robot, nu, heading, inputs):
 
 def test_the_derivative_is_the_slope_of_a_step(robot):
     step_s = 1e-6
-    plant = robot.plant("rk4", step_s, nu_rad_per_s=NU, heading_rad=HEADING)
+    plant = robot.plant(EXPLICIT, step_s, nu_rad_per_s=NU, heading_rad=HEADING)
     plant.run(INPUTS)
     slope = (np.array([*plant.nu, plant.pose.x_m, plant.pose.y_m, plant.pose.heading_rad])
              - [*NU, 0.0, 0.0, HEADING]) / step_s
@@ -115,3 +125,73 @@ def test_rates_of_wheels_that_slip_are_refused():
 def test_what_makes_no_vehicle_is_refused_by_its_name(table, message):
     with pytest.raises(laconic.BadInput, match=message):
         laconic.Vehicle(table)
+
+
+def bits(vehicle: laconic.Vehicle) -> bytes:
+    """All numbers of a vehicle."""
+    return bytes(vehicle.core.ffi.buffer(vehicle.c))
+
+
+@pytest.mark.parametrize("name", laconic.scene_names())
+def test_a_vehicle_takes_the_table_of_every_scenes_file_as_it_is(name: str) -> None:
+    tables = tomllib.loads((SCENE_DIR / f"{name}.toml").read_text(encoding="utf-8"))
+    ground = {"ground": tables["ground"]} if "ground" in tables else {}
+    real = tables["run"].get("real", "double")
+    assert bits(laconic.Vehicle(tables["vehicle"] | ground, real)) == bits(laconic.Vehicle.of(laconic.read_scene(name)))
+
+
+ROBOT: dict[str, Any] = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05, "motor_gain_Nm_per_V": 0.5,
+                         "motor_damping_Nms": 0.02}
+WHEEL: dict[str, Any] = {"kind": "mecanum", "x_m": 0.2, "y_m": 0.1, "axle_rad": -np.pi / 2, "roller_rad": np.pi / 4}
+
+
+def test_every_spelling_of_a_scene_has_the_bits_of_the_plain_one() -> None:
+    plain = laconic.Vehicle(ROBOT | {"ground": {"friction_coefficient": 0.5, "slope_rad": np.radians(3.0),
+                                                "slope_heading_rad": np.radians(40.0)},
+                                     "wheel_inertia_kgm2": 0.01,
+                                     "wheel": [WHEEL | {"motor_circuit": 2}, WHEEL | {"y_m": 0.0}]})
+    polar = {"distance_m": np.float64(0.2), "bearing_deg": 0}
+    spelled = laconic.Vehicle(ROBOT | {
+        "wheel_inertia_kgm2": 0.01,
+        "ground": {"friction_coefficient": 0.5, "slope_deg": 3.0, "slope_heading_deg": np.float64(40.0)},
+        "wheel": [{"kind": "mecanum", "x_m": 0.2, "y_m": 0.1, "axle_deg": -90, "roller_deg": 45.0,
+                   "motor_circuit": "shorted"},
+                  {"kind": "mecanum", **polar, "axle_deg": -90.0, "roller_rad": np.pi / 4}]})
+    assert bits(spelled) == bits(plain)
+    polar["bearing_deg"] = 130
+    by_bearing = laconic.Vehicle(ROBOT | {"wheel_inertia_kgm2": 0.01, "wheel": [{"kind": "omni", **polar}]})
+    in_file = laconic.build_scene({"vehicle": ROBOT | {"wheel_inertia_kgm2": 0.01,
+                                                       "wheel": [{"kind": "omni", **polar, "axle_deg": 0}]},
+                                   "run": {"duration_s": 1.0, "step_s": 0.1}}).vehicle["wheel"][0]
+    assert (by_bearing.c.wheel[0].x_m, by_bearing.c.wheel[0].y_m) == (in_file["x_m"], in_file["y_m"])
+
+
+def test_an_imu_is_turned_by_degrees_too() -> None:
+    plant = laconic.Vehicle(ROBOT).plant()
+    in_degrees, in_radians = (plant.sensors({"imu": imu}).c.settings.imu.heading_rad
+                              for imu in ({"heading_deg": 90}, {"heading_rad": np.pi / 2}))
+    assert in_degrees == in_radians
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"axle_deg": -90}, "vehicle.wheel[1].axle_deg: is given besides axle_rad; keep one of them"),
+    ({"distance_m": 0.2}, "vehicle.wheel[1].distance_m: is given besides x_m; give x_m and y_m, or distance_m and be"),
+    ({"axle_deg": "x"}, "vehicle.wheel[1].axle_deg: is given besides axle_rad"),
+    ({"roler_deg": 45}, "vehicle.wheel[1].roler_deg: unknown key; did you mean"),
+    ({"motor_circuit": "opne"}, "vehicle.wheel[1].motor_circuit: there is no 'opne'; did you mean open?")])
+def test_what_is_spelled_twice_or_wrongly_is_named(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(laconic.BadInput) as refused:
+        laconic.Vehicle(ROBOT | {"wheel": [WHEEL | change]})
+    assert message in str(refused.value)
+
+
+@pytest.mark.parametrize("place, message", [
+    ({"distance_m": 0.2}, "vehicle.wheel[1].bearing_rad: is missing; give a number"),
+    ({"bearing_deg": 20}, "vehicle.wheel[1].distance_m: is missing; give a number"),
+    ({"distance_m": -0.2, "bearing_deg": 20}, "vehicle.wheel[1].distance_m: is -0.2; give 0 or more, and the dir"),
+    ({"distance_m": 0.2, "bearing_deg": "north"}, "vehicle.wheel[1].bearing_deg: 'north' is no number; give one"),
+    ({"distance_m": 0.2, "bearing_deg": 0, "bearing_rad": 0}, "bearing_deg: is given besides bearing_rad; keep one")])
+def test_half_a_place_is_named(place: dict[str, Any], message: str) -> None:
+    with pytest.raises(laconic.BadInput) as refused:
+        laconic.Vehicle(ROBOT | {"wheel": [{"kind": "omni", **place}]})
+    assert message in str(refused.value)

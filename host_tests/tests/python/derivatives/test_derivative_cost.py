@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from laconic.base.paths import built
+from laconic.scene.methods import STIFF_8
 from laconic.tools.report.counting import cachegrind_present, instructions_of
 from laconic.tools.verify.exact.trials import METHODS
 
@@ -12,7 +13,7 @@ pytestmark = pytest.mark.nightly
 
 FEW, MANY = 100, 300  # calls: what a count of one run has in common with another's cancels
 LIMIT = 6.0           # steps
-LIMITS = {"exponential-gauss-8": 6.6}  # rounds at four nodes, in which a direction costs as much as the step
+LIMITS = {STIFF_8: 6.6}  # rounds at four nodes, in which a direction costs as much as the step
 
 
 def cost(method: str, what: str) -> float:

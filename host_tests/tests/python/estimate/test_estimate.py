@@ -19,6 +19,7 @@ from laconic.core import load
 from laconic.core.estimate import NAMES
 from laconic.errors import BadInput, Refused
 from laconic.scene import METHODS, read_scene
+from laconic.scene.methods import EXACT, EXPLICIT, EXPLICIT_8, STIFF_8
 from laconic.simulation import simulate
 from laconic.tools.enclosure.balls import precision
 from laconic.tools.enclosure.readings import reading_of_file
@@ -114,9 +115,9 @@ def test_a_plant_has_an_estimate_that_can_be_saved():
 
 def test_an_estimate_goes_on_with_another_vehicle_and_step():
     """Beside the same changes at a tenth of the steps, by eighth order; a refused one leaves plant and estimate."""
-    scene, held = read_scene("robotino2").with_run(method="exact-flow", step_s=0.02), {"voltage_V": [5.0, -3.0, 1.0]}
+    scene, held = read_scene("robotino2").with_run(method=EXACT, step_s=0.02), {"voltage_V": [5.0, -3.0, 1.0]}
     plant = scene.plant(load("double"))
-    fine = scene.with_run(method="exponential-gauss-8", step_s=0.002).plant(load("double"))
+    fine = scene.with_run(method=STIFF_8, step_s=0.002).plant(load("double"))
     vehicle = scene.c_vehicle(load("double"))
     estimate = plant.estimate()
     estimate.run(held, steps=50)
@@ -163,7 +164,7 @@ def test_the_command_tells_the_error_and_writes_it(tmp_path):
 
 
 @pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
-@pytest.mark.parametrize("method", ["auto", "rk4", "taylor-8"])
+@pytest.mark.parametrize("method", ["auto", EXPLICIT, EXPLICIT_8])
 def test_a_watched_step_costs_at_most_three_fifths_more(capsys, method):
     program = str(built("bin/count_estimate"))
 

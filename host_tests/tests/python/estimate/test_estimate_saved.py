@@ -8,6 +8,7 @@ import pytest
 
 import laconic
 from laconic.errors import BadInput
+from laconic.scene.methods import EXACT, EXPLICIT, STIFF_8
 
 
 def estimate_of(robot: str = "robotino2", method: str = "auto", step_s: float = 0.01, window: int = 16):
@@ -21,8 +22,8 @@ def test_what_is_no_estimate_is_refused_with_its_maker(given):
         estimate_of().restore(given)
 
 
-@pytest.mark.parametrize("other", [{"robot": "kuka_youbot"}, {"method": "rk4", "step_s": 0.001}, {"step_s": 0.02},
-                                   {"window": 8}, {"method": "exact-flow"}])
+@pytest.mark.parametrize("other", [{"robot": "kuka_youbot"}, {"method": EXPLICIT, "step_s": 0.001}, {"step_s": 0.02},
+                                   {"window": 8}, {"method": EXACT}])
 def test_an_estimate_of_another_run_is_refused(other):
     with pytest.raises(BadInput, match="^estimate: was saved for another robot, method, step or window"):
         estimate_of().restore(estimate_of(**other).save())
@@ -43,7 +44,7 @@ def test_its_own_comes_back_and_one_with_a_number_that_is_none_does_not():
 def test_half_steps_of_auto_show_its_error_whatever_panels_a_step_has(step_s):
     vehicle, held = laconic.Vehicle.of(laconic.read_scene("robotino2")), {"voltage_V": [6.0, -6.0, 9.0]}
     start = (40.0, -30.0, 60.0)
-    truth = vehicle.plant("exponential-gauss-8", 0.0005, nu_rad_per_s=start)
+    truth = vehicle.plant(STIFF_8, 0.0005, nu_rad_per_s=start)
     truth.run(held, 1200)
     plant = vehicle.plant("auto", step_s, nu_rad_per_s=start)
     estimate = plant.estimate(1)

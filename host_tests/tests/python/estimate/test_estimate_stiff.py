@@ -10,6 +10,7 @@ from flint import arb
 
 from laconic.core.estimate import NAMES
 from laconic.scene import read_scene
+from laconic.scene.methods import EXACT, EXACT_4
 from laconic.simulation import simulate
 from laconic.tools.enclosure.balls import precision
 from laconic.tools.enclosure.readings import reading_of_file
@@ -86,7 +87,7 @@ def test_auto_tells_errors_that_are_made_while_damping_dies_out_or_stay_on_a_fas
     check_estimate(scene_of(tmp_path, dampings_nms, (90.0, 200.0, yaw), step_s, 0.06, "auto"), 2)
 
 
-@pytest.mark.parametrize("method", ["exact-flow", "exact-flow-4"])
+@pytest.mark.parametrize("method", [EXACT, EXACT_4])
 def test_steps_that_yaw_too_far_for_eighth_order_are_compared_with_shorter_ones(tmp_path, method):
     """Two half steps by the method itself err as much as one step where damping is fast."""
     check_estimate(scene_of(tmp_path, (10.0, 10.0, 10.0), (20.0, 0.0, 100.0), 0.2, 0.2, method), 2)
@@ -94,4 +95,4 @@ def test_steps_that_yaw_too_far_for_eighth_order_are_compared_with_shorter_ones(
 
 @pytest.mark.parametrize("duration_s", [0.04, 0.06, 0.08])
 def test_errors_that_fade_at_first_and_then_stay_are_told_in_each_step(tmp_path, duration_s):
-    check_estimate(scene_of(tmp_path, (10.0, 10.0, 0.0), (20.0, 0.0, 60.0), 0.02, duration_s, "exact-flow-4"), 2)
+    check_estimate(scene_of(tmp_path, (10.0, 10.0, 0.0), (20.0, 0.0, 60.0), 0.02, duration_s, EXACT_4), 2)

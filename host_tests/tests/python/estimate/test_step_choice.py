@@ -8,6 +8,7 @@ import pytest
 from laconic.core import load
 from laconic.errors import BadInput
 from laconic.scene import read_scene
+from laconic.scene.methods import EXACT, EXPLICIT_8
 from laconic.scene.scene_tables import scene_tables
 from laconic.scene.step_choice import candidates, run_pilot
 from laconic.simulation import advance_plant, simulate
@@ -87,8 +88,8 @@ def test_it_is_a_number_from_there_on(tmp_path):
 
 def test_another_method_finds_another_step(tmp_path):
     scene = scene_in(tmp_path, text_of("1e-8"))
-    assert scene.with_run(method="exact-flow").run.step_s < scene.run.step_s
-    assert scene.with_run(method="taylor-8").run.tolerance == 1e-8
+    assert scene.with_run(method=EXACT).run.step_s < scene.run.step_s
+    assert scene.with_run(method=EXPLICIT_8).run.tolerance == 1e-8
 
 
 @pytest.mark.parametrize(("step", "tolerance", "words"), [

@@ -10,6 +10,7 @@ import pytest
 from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.simulation import simulate
 
 LOSSES = ("slip_loss_J", "axle_loss_J", "motor_loss_J", "supply_loss_J", "numerical_loss_J")
@@ -57,7 +58,7 @@ REFUSED = {
         ("[vehicle.motor]\nresistance_ohm = 0.6\ntorque_constant_Nm_per_A = 0.04\nback_emf_Vs_per_rad = 0.04\n"
          "gear_ratio = 40.0\nviscous_friction_Nms = 2e-5\n", "motor_gain_Nm_per_V = 1\nmotor_damping_Nms = 1\n"),
         ("vehicle.drive", "[vehicle.motor]")),
-    "another method": (("step_s = 0.001", "step_s = 0.001\nmethod = \"rk4\""), ("run.method", "use auto")),
+    "another method": (("step_s = 0.001", f"step_s = 0.001\nmethod = \"{EXPLICIT}\""), ("run.method", "use auto")),
     "wheels without inertia": (("wheel_inertia_kgm2 = 0.01", "wheel_inertia_kgm2 = 0"),
                                ("vehicle.wheel_inertia_kgm2: 0 is not positive",)),
     "no such circuit": (("y_m = 0.2\naxle_deg = -90", "y_m = 0.2\naxle_deg = -90\nmotor_circuit = \"off\""),

@@ -9,6 +9,7 @@ import pytest
 from laconic.errors import BadInput
 from laconic.scene import read_scene
 from laconic.scene.key_path import key_path, known_keys
+from laconic.scene.methods import EXPLICIT
 from laconic.scene.scene_tables import scene_tables
 
 ROBOT = "robotino2"
@@ -27,7 +28,7 @@ def test_a_value_is_read_as_it_holds_in_the_scene(key, value):
 def test_a_value_that_is_set_is_the_scenes():
     tables = scene_tables(ROBOT).with_values({
         "vehicle.wheel[2].x_m": -0.12, "vehicle.wheel[*].radius_m": 0.041, "vehicle.wheel[1].axle_rad": 1.0,
-        "initial.nu_rad_per_s[3]": 0.5, "input[1].value[2]": 2.5, "run.step_s": 0.002, "run.method": "rk4"})
+        "initial.nu_rad_per_s[3]": 0.5, "input[1].value[2]": 2.5, "run.step_s": 0.002, "run.method": EXPLICIT})
     scene, before = tables.scene(), read_scene(ROBOT)
     wheels = scene.vehicle["wheel"]
     assert wheels[1]["x_m"] == -0.12
@@ -36,7 +37,7 @@ def test_a_value_that_is_set_is_the_scenes():
     assert wheels[0]["axle_rad"] == 1.0
     assert scene.initial.nu_rad_per_s == (0.0, 0.0, 0.5)
     assert scene.inputs[0].value[1] == 2.5
-    assert (scene.run.step_s, scene.run.method) == (0.002, "rk4")
+    assert (scene.run.step_s, scene.run.method) == (0.002, EXPLICIT)
 
 
 def test_the_tables_of_a_file_stay_as_they_are_when_a_copy_is_changed():

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from laconic.cli.main import run
+from laconic.scene.methods import EXPLICIT
 
 GOOD = """
 name = "Four wheels"
@@ -159,7 +160,7 @@ BAD = {
         ('"steps"\nt_s = [0.0, 0.5]\nvalue = [6.0, -3.0]', '"sine"\namplitude = 1\nfrequency_Hz = 1e308'),
         ("input[1].frequency_Hz: 1e+308 Hz",)),
     "step does not fit": (("step_s = 0.01", "step_s = 0.03"), ("run.duration_s", "0.03 s", "step of 0.02941176470")),
-    "unknown method": (("[run]", '[run]\nmethod = "rk5"'), ("run.method", "did you mean rk4?")),
+    "unknown method": (("[run]", '[run]\nmethod = "rk5"'), ("run.method", f"did you mean {EXPLICIT}?")),
     "unknown scalar type": (("[run]", '[run]\nreal = "half"'), ("run.real", "half")),
     "unknown output": (("[run]", '[outputs]\nsignals = ["speed"]\n[run]'), ("outputs.signals", "speed")),
     "outputs between steps": (("[run]", "[outputs]\nevery_s = 0.015\n[run]"), ("outputs.every_s", "would do")),
@@ -190,7 +191,7 @@ def test_bad_scene_is_one_line_with_file_field_and_remedy(change, words, tmp_pat
     assert text != GOOD
     path = tmp_path / "scene.toml"
     path.write_text(text)
-    explicit = [] if "method" in text else ["--method", "rk4"]
+    explicit = [] if "method" in text else ["--method", EXPLICIT]
     line = complaint(capsys, ["simulate", str(path), *explicit])
     assert str(path) in line
     for word in words:

@@ -51,3 +51,11 @@ def test_what_makes_no_scene_is_refused_by_its_key(change, message):
 def test_what_is_no_mapping_is_refused():
     with pytest.raises(laconic.BadInput, match="scene: 's1' is no mapping"):
         laconic.build_scene("s1")
+
+
+def test_a_name_that_fills_a_page_is_refused_by_its_length() -> None:
+    tables = {"name": "n" * 10**6, "vehicle": {"mass_kg": 1.0}, "run": {"duration_s": 1.0, "step_s": 0.1}}
+    with pytest.raises(laconic.BadInput) as refused:
+        laconic.build_scene(tables)
+    assert str(refused.value).endswith("name: has 1000000 letters; give at most 255, and what else there is to say as "
+                                       "source")

@@ -15,6 +15,7 @@ from laconic.cli.main import run
 from laconic.pictures.film.moving_picture import FILMED, film
 from laconic.pictures.film.timing import LONGEST_S, timing_of
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.simulation import Trajectory, simulate, usual_signals
 from scene_text import constant, table, wheel
 
@@ -107,7 +108,7 @@ def test_a_run_that_is_refused_on_the_way_is_filmed_up_to_there(tmp_path: Path,
     path, picture = tmp_path / "my.toml", tmp_path / "film.svg"
     wheels = "".join(wheel("omni", 0.2 * math.cos(i), 0.2 * math.sin(i), axle_rad=i) for i in range(3))
     late = table("[[input]]", signal="body_moment_Nm", kind="steps", t_s=[0.5], value=[1e3])
-    path.write_text(made_up(wheels + late, method="rk4", step_s=0.1), encoding="utf-8")
+    path.write_text(made_up(wheels + late, method=EXPLICIT, step_s=0.1), encoding="utf-8")
     assert run(["simulate", str(path), "--film", str(picture)]) == 1
     assert str(picture) in capsys.readouterr().err and "s in real time" in picture.read_text(encoding="utf-8")
 

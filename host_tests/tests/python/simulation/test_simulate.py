@@ -15,6 +15,7 @@ from laconic.base.paths import SOURCE_DIR
 from laconic.cli.main import run
 from laconic.core import load
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT, STIFF_8
 from laconic.simulation import RunRefused, simulate, usual_signals
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -83,7 +84,7 @@ def test_csv_to_stdout_is_nothing_but_csv(capsys):
 def test_json_reports_what_was_run_and_where_it_ended(capsys):
     assert run(["simulate", "turtlebot3_burger", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
-    assert (answer["method"], answer["chosen"], answer["steps"]) == ("auto", "exponential-gauss-8", 12_000)
+    assert (answer["method"], answer["chosen"], answer["steps"]) == ("auto", STIFF_8, 12_000)
     assert answer["final"]["time_s"] == 12.0
     assert math.hypot(answer["final"]["x_m"], answer["final"]["y_m"]) == pytest.approx(1.07, abs=0.01)
 
@@ -91,13 +92,13 @@ def test_json_reports_what_was_run_and_where_it_ended(capsys):
 @pytest.mark.parametrize("name", ["s1", "turtlebot3_burger"])
 def test_people_are_shown_which_method_auto_picked(name, capsys):
     assert run(["simulate", name]) == 0
-    assert "auto (picked exponential-gauss-8)" in capsys.readouterr().out
+    assert f"auto (picked {STIFF_8})" in capsys.readouterr().out
 
 
 def test_method_step_and_scalar_type_can_be_given(capsys):
-    assert run(["simulate", "s1", "--method", "rk4", "--step", "0.01", "--real", "single", "--json"]) == 0
+    assert run(["simulate", "s1", "--method", EXPLICIT, "--step", "0.01", "--real", "single", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
-    assert (answer["chosen"], answer["steps"], answer["real"]) == ("rk4", 1000, "single")
+    assert (answer["chosen"], answer["steps"], answer["real"]) == (EXPLICIT, 1000, "single")
     nu = answer["final"]["nu_rad_per_s[1]"]
     assert nu == float(np.float32(nu))
 
@@ -159,9 +160,9 @@ def test_the_run_ends_at_its_end_even_between_two_outputs(tmp_path):
 
 
 def spun_up(tmp_path: Path, outputs: str = "") -> Path:
-    """A moment spins the puck up until rk4 refuses its step."""
+    """A moment spins the puck up until an explicit method refuses its step."""
     spinning = force("steps", "t_s=[0.0]\nvalue=[20.0]").replace("body_force_N[1]", "body_moment_Nm")
-    return scene_file(tmp_path, spinning + outputs, 'duration_s = 10.0\nstep_s = 0.1\nmethod = "rk4"\n')
+    return scene_file(tmp_path, spinning + outputs, f'duration_s = 10.0\nstep_s = 0.1\nmethod = "{EXPLICIT}"\n')
 
 
 def test_a_step_that_is_refused_on_the_way_reports_when(tmp_path, capsys):
@@ -202,7 +203,7 @@ def test_a_program_gets_the_motion_up_to_a_refused_step(tmp_path):
 def test_a_run_whose_first_step_is_refused_has_no_result(tmp_path, capsys):
     out = tmp_path / "run.csv"
     path = scene_file(tmp_path, "[initial]\nyaw_rate_rad_per_s = 1e3", "duration_s = 1.0\nstep_s = 0.1\n")
-    assert run(["simulate", str(path), "--method", "rk4", "--out", str(out)]) == 2
+    assert run(["simulate", str(path), "--method", EXPLICIT, "--out", str(out)]) == 2
     assert "at t = 0 s: " in capsys.readouterr().err
     assert not out.exists()
 
@@ -221,7 +222,7 @@ def test_free_motion_keeps_its_energy():
 
 
 def test_held_and_sampled_steps_of_a_constant_input_agree():
-    scene = read_scene("s1").with_run(method="rk4")
+    scene = read_scene("s1").with_run(method=EXPLICIT)
     held, sampled = scene.plant(scene.core()), scene.plant(scene.core())
     row = held.core.input_row({"voltage_V": [2.0, -2.0, 1.0]}, 3)
     held.run(held.core.input(row), 500)

@@ -12,6 +12,7 @@ import pytest
 
 from laconic.cli.main import run
 from laconic.scene import Scene
+from laconic.scene.methods import EXPLICIT_8
 from laconic.simulation import simulate
 from laconic.tools.verify.reference import reference_states
 from sensor_scenes import BODY, ENCODERS, ERRORS, IMU, PLACE, RUN, SINES, STEPS, WHEELS, sensed_scene
@@ -53,7 +54,8 @@ def test_on_a_steady_circle_it_feels_the_centripetal_acceleration_of_its_place(t
 
 
 def test_an_ideal_imu_shows_the_second_derivative_of_its_places_path_by_another_integrator(tmp_path: Path) -> None:
-    scene = sensed_scene(tmp_path, SINES, IDEAL, "[run]\nduration_s = 1.0\nstep_s = 0.001\nmethod = \"taylor-8\"\n")
+    scene = sensed_scene(tmp_path, SINES, IDEAL,
+                         f"[run]\nduration_s = 1.0\nstep_s = 0.001\nmethod = \"{EXPLICIT_8}\"\n")
     found, h = simulate(scene, IMU_SIGNALS), 2e-3
     for tick in (50, 333, 700, 950):
         path, heading = place_of(scene, tick * 0.001 + h * np.arange(-2, 3))

@@ -172,3 +172,65 @@ def test_no_message_shows_the_text_of_a_file_that_load_yaml_reads(tmp_path: Path
     told = capsys.readouterr().err
     assert "load_yaml: " in told
     assert "secret" not in told
+
+
+TRIANGLE = "v 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+@pytest.mark.parametrize("uri", ["../outside.obj", "../../outside.obj", "meshes/../../../outside.obj",
+                                 "package://kit/../../outside.obj", "file://{}/outside.obj", "{}/outside.obj"])
+def test_a_mesh_outside_of_the_robots_folder_is_not_opened(tmp_path: Path, uri: str,
+                                                           monkeypatch: pytest.MonkeyPatch) -> None:
+    kit = tmp_path / "some" / "kit"
+    (kit / "meshes").mkdir(parents=True)
+    for folder in (tmp_path, tmp_path / "some"):
+        (folder / "outside.obj").write_text(TRIANGLE, encoding="utf-8")
+    monkeypatch.setattr(MeshFiles, "_points_of", lambda *_: pytest.fail("it was opened"))
+    with MeshFiles(kit / "robot.urdf") as files:
+        assert files.points(uri.format(tmp_path)) is None
+    assert list(files.missing.values()) == ["lies outside of the robot's folder; copy it there, or --package "
+                                            "NAME=FOLDER"]
+
+
+@pytest.mark.parametrize("robot, uri", [
+    ("robot.urdf", "meshes/wheel.obj"), ("urdf/robot.urdf", "../meshes/wheel.obj"),
+    ("robots/a/b/robot.urdf", "../../../meshes/wheel.obj"), ("urdf/robot.urdf", "package://kit/meshes/wheel.obj"),
+    ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"), ("urdf/robot.urdf", "package://other/wheel.obj"),
+    ("urdf/robot.urdf", "package://given/wheel.obj"), ("urdf/robot.urdf", "file://{}/../elsewhere/wheel.obj")])
+def test_a_mesh_of_the_robot_its_kit_or_a_package_is_read(tmp_path: Path, robot: str, uri: str) -> None:
+    kit = tmp_path / "kit"
+    for folder in (kit / "meshes", tmp_path / "other", tmp_path / "elsewhere", (kit / robot).parent):
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "wheel.obj").write_text(TRIANGLE, encoding="utf-8")
+    (kit / "package.xml").touch()
+    with MeshFiles(kit / robot, {"given": tmp_path / "elsewhere"}) as files:
+        found = files.points(uri.format(kit))
+    assert found is not None and found.shape == (3, 3) and not files.missing
+
+
+def test_a_mesh_by_a_link_in_the_robots_folder_is_read(tmp_path: Path) -> None:
+    (tmp_path / "kit").mkdir()
+    (tmp_path / "wheel.obj").write_text(TRIANGLE, encoding="utf-8")
+    (tmp_path / "kit" / "linked.obj").symlink_to(tmp_path / "wheel.obj")
+    with MeshFiles(tmp_path / "kit" / "robot.urdf") as files:
+        assert files.points("linked.obj") is not None
+
+
+def chain(form: str, count: int) -> str:
+    if form == "robot.xml":
+        body = "<body><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body>"
+        return f"<mujoco><worldbody>{body * count}</worldbody></mujoco>"
+    links = "".join(f'<link name="l{k}"/>' for k in range(count))
+    if form == "robot.urdf":
+        joints = "".join(f'<joint name="j{k}" type="fixed"><parent link="l{k}"/><child link="l{k + 1}"/></joint>'
+                         for k in range(count - 1))
+        return f'<robot name="chain">{links}{joints}</robot>'
+    return f'<sdf version="1.8"><model name="chain">{links}</model></sdf>'
+
+
+@pytest.mark.parametrize("form, what", [("robot.urdf", "links"), ("robot.sdf", "links"), ("robot.xml", "bodies")])
+def test_a_chain_of_more_links_than_any_robot_has_is_refused_at_once(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str], form: str, what: str) -> None:
+    assert imported(tmp_path, form, chain(form, 10_001)) == 2
+    told = capsys.readouterr().err
+    assert f"{form}: has 1000" in told and f" {what}, and 10000 are read at most; give a part of it" in told

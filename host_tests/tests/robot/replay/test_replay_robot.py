@@ -15,6 +15,7 @@ from laconic.robot.replay.friction import MODELS, Friction, fit, parameter_names
 from laconic.robot.replay.log import DEFAULT_MAP, read_log, read_map
 from laconic.robot.replay.runs import compare_all, gather
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.analyse.from_core import subject_of
 from recorded_data import recorded
 
@@ -38,7 +39,7 @@ def made_up_run(robot, path: Path, direction_deg: float, speed: float, drag: flo
     core, angle = robot.core, np.radians(direction_deg)
     vehicle = core.ffi.new("laconic_vehicle *", robot.vehicle[0])
     vehicle.motor_gain_Nm_per_V, vehicle.motor_damping_Nms = 0.0, TRUE["damping"]
-    plant, rows = core.plant(vehicle, "rk4", 0.001), robot.matrices.wheel_rows
+    plant, rows = core.plant(vehicle, EXPLICIT, 0.001), robot.matrices.wheel_rows
     wanted = rows @ np.array([np.cos(angle), np.sin(angle), 0.0]) * speed / 0.04
     share, per_ampere, step, lines, last = np.linalg.inv(rows), torque_per_ampere(robot), 0.001, [], np.zeros(2)
     for k in range(5000):

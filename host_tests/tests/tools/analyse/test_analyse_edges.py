@@ -120,7 +120,7 @@ def test_a_title_of_any_name_stays_within_the_picture_and_ends_in_an_ellipsis(na
 
 
 def test_a_short_name_stands_in_one_line_with_its_description():
-    assert wrapped("Robot", 40, "rk4, step 0.01 s") == "Robot: rk4, step 0.01 s"
+    assert wrapped("Robot", 40, "auto, step 0.01 s") == "Robot: auto, step 0.01 s"
 
 
 def test_a_new_page_takes_away_the_older_pages_pictures_and_nothing_else(capsys, tmp_path):

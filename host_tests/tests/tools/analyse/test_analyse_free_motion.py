@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from laconic.core import load
+from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT
 from laconic.tools.analyse.field import Field
 from laconic.tools.analyse.free_motion import S2, FreeMotion, yaw_by_integral
 from laconic.tools.analyse.from_core import field_of, nu_rates
@@ -130,7 +131,7 @@ def test_closed_form_equals_the_reference_trajectories_to_1e_12(case):
 def test_closed_form_equals_the_cores_exact_flow_to_1e_12(seed):
     vehicle, rng = random_vehicle(seed), np.random.default_rng(seed + 20)
     nu = rng.normal(0.0, 2.0, 3)
-    motion, plant = free_motion(vehicle, nu), CORE.plant(vehicle, "exact-flow", 0.1, nu_rad_per_s=nu)
+    motion, plant = free_motion(vehicle, nu), CORE.plant(vehicle, EXACT, 0.1, nu_rad_per_s=nu)
     for step in range(1, 101):
         plant.run(CORE.input(), 1)
         assert np.abs(plant.nu - motion.nu_at(0.1 * step)).max() < 1e-12 * max(1.0, np.abs(nu).max())
@@ -140,7 +141,7 @@ def test_closed_form_equals_the_cores_exact_flow_to_1e_12(seed):
 def test_heading_and_path_of_the_closed_form_are_those_of_the_core_to_1e_11(seed):
     vehicle, rng = random_vehicle(seed), np.random.default_rng(seed + 20)
     nu = rng.normal(0.0, 2.0, 3)
-    motion, plant = free_motion(vehicle, nu), CORE.plant(vehicle, "exact-flow-4", 0.005, nu_rad_per_s=nu)
+    motion, plant = free_motion(vehicle, nu), CORE.plant(vehicle, EXACT_4, 0.005, nu_rad_per_s=nu)
     plant.run(CORE.input(), 2000)
     path = motion.path(np.linspace(0.0, 10.0, 401)[1:], 0.05)[-1]
     assert plant.pose.heading_rad == pytest.approx(float(motion.angle_at(10.0)), abs=1e-11)
@@ -156,7 +157,7 @@ def test_closed_form_holds_with_constraints_too(wheels):
     vehicle = vehicle_of(wheels)
     field = free_field(vehicle)
     nu = field.nu(field.zeta([1.0, 2.0, 1.5]))
-    motion, plant = free_motion(vehicle, nu), CORE.plant(vehicle, "exact-flow", 0.05, nu_rad_per_s=nu)
+    motion, plant = free_motion(vehicle, nu), CORE.plant(vehicle, EXACT, 0.05, nu_rad_per_s=nu)
     for step in range(1, 101):
         plant.run(CORE.input(), 1)
         assert np.abs(plant.nu - motion.nu_at(0.05 * step)).max() < 1e-12
@@ -176,7 +177,7 @@ def test_motion_is_periodic_exactly_when_nu_3_never_vanishes_on_its_curve():
 
 def test_periodic_motion_returns_after_its_period_in_the_core():
     motion = free_motion(three_wheels(), [0.3, 1.0, 2.0])
-    plant = CORE.plant(three_wheels(), "rk4", motion.period_s / 4000, nu_rad_per_s=[0.3, 1.0, 2.0])
+    plant = CORE.plant(three_wheels(), EXPLICIT, motion.period_s / 4000, nu_rad_per_s=[0.3, 1.0, 2.0])
     plant.run(CORE.input(), 4000)
     assert plant.nu == pytest.approx([0.3, 1.0, 2.0], abs=1e-10)
     assert motion.angle_at(motion.period_s) == pytest.approx(2.0 * np.pi / motion.petal_rate, rel=1e-12)
@@ -196,7 +197,7 @@ def test_asymptotic_motion_tends_to_straight_motion_and_never_crosses_nu_3_zero(
 
 def test_motion_without_turning_is_straight_for_ever():
     motion = free_motion(three_wheels(), [0.4, -3.0, 0.0])
-    plant = CORE.plant(three_wheels(), "exact-flow", 0.1, nu_rad_per_s=[0.4, -3.0, 0.0])
+    plant = CORE.plant(three_wheels(), EXACT, 0.1, nu_rad_per_s=[0.4, -3.0, 0.0])
     plant.run(CORE.input(), 1000)
     assert motion.kind == "straight"
     assert list(plant.nu) == pytest.approx([0.4, -3.0, 0.0], abs=1e-14)
@@ -227,7 +228,7 @@ def test_straight_free_motion_is_stable_for_negative_nu_2_and_unstable_for_posit
     values = np.linalg.eigvals(field.jacobian(field.zeta([0.2, nu_2, 0.0])))
     crossing = values.real[np.argmax(np.abs(values.real))]
     assert np.sign(crossing) == np.sign(nu_2)
-    plant = CORE.plant(three_wheels(), "exact-flow", 0.1, nu_rad_per_s=[0.2, nu_2, 1e-3])
+    plant = CORE.plant(three_wheels(), EXACT, 0.1, nu_rad_per_s=[0.2, nu_2, 1e-3])
     plant.run(CORE.input(), 20)
     assert (plant.nu[2] > 1e-3) == (nu_2 > 0.0)
 
@@ -240,7 +241,7 @@ def test_trajectories_lie_on_ellipses_about_k_over_a3(nu):
     centre = inertia[2] @ nu / inertia[2, 2]
     steep = inertia[2, 2] / -inertia[2, 0]
     weight = inertia[0, 0] * steep**2 + 2.0 * inertia[0, 2] * steep + inertia[2, 2]
-    plant, sizes = CORE.plant(vehicle, "exact-flow", 0.2, nu_rad_per_s=nu), []
+    plant, sizes = CORE.plant(vehicle, EXACT, 0.2, nu_rad_per_s=nu), []
     for _ in range(100):
         _, nu_2, nu_3 = plant.nu
         sizes.append(inertia[1, 1] * nu_2**2 + weight * (nu_3 - centre) ** 2)

@@ -5,6 +5,7 @@ import pytest
 
 from laconic.core import load
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.analyse import confirm, pushed
 from laconic.tools.analyse.continuation import diagram
 from laconic.tools.analyse.cycle import cycle_near
@@ -383,7 +384,7 @@ def test_caster_theta_pi_is_stable_and_theta_0_is_not():
 @pytest.mark.parametrize(("heading", "stays"), [(np.pi, True), (0.0, False)])
 def test_caster_simulated_from_near_a_heading_stays_or_leaves(heading, stays):
     subject = subject_of(read_scene("paper_caster"))
-    plant = CORE.plant(subject.vehicle, "rk4", 0.002, nu_rad_per_s=[0.0, 0.0, 0.0], heading_rad=heading + 0.01)
+    plant = CORE.plant(subject.vehicle, EXPLICIT, 0.002, nu_rad_per_s=[0.0, 0.0, 0.0], heading_rad=heading + 0.01)
     held, furthest = CORE.input(subject.inputs), 0.0
     for _ in range(200):
         plant.run(held, 25)

@@ -11,6 +11,7 @@ from mpmath import mp, mpf
 from laconic.base.paths import scene_names
 from laconic.core import load
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.enclosure.rk4_text import Constants, rk4_step
 from laconic.tools.enclosure.rounding_bound import constants_of, forcing_of, rounding_bounds, rounding_row
 
@@ -22,7 +23,7 @@ FLUSHED = 1e-17  # components below it are flushed on their way to 0
 
 def steps_of(name: str) -> Any:
     """A scene's plant in single, and what it is before and after each step."""
-    scene = read_scene(name).with_run(method="rk4", real="single")
+    scene = read_scene(name).with_run(method=EXPLICIT, real="single")
     plant, values = scene.plant(load("single")), scene.inputs_on_grid().held_at(0)
     held, b = plant.core.input(values), forcing_of(plant, values)
 

@@ -17,6 +17,7 @@ from laconic.cli.main import run
 from laconic.core import Vehicle
 from laconic.errors import BadInput
 from laconic.scene import read_scene
+from laconic.scene.methods import STIFF_4
 from laconic.tools.learn import EPISODE_STEPS, ID, DriveToPose, DriveToPoseVector
 from laconic.tools.learn.task import OBSERVATION
 from laconic.tools.report.many import race
@@ -51,7 +52,7 @@ def test_every_lane_has_the_bits_of_the_plant_that_drives_alone(real):
     env = DriveToPoseVector(20, real=real, **MIXED)
     env.reset(seed=4)
     fleet, actions = env.fleet, actions_of(env, 3)
-    plants = [fleet.vehicles[fleet.variant[lane]].plant("exponential-kahan-4", 0.005) for lane in range(20)]
+    plants = [fleet.vehicles[fleet.variant[lane]].plant(STIFF_4, 0.005) for lane in range(20)]
     for lane, plant in enumerate(plants):
         plant.restore(fleet.batch.state(lane), 0)
     for each in actions:

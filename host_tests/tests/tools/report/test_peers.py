@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.report import peers
 from laconic.tools.report.accuracy import Truth, follow
 from laconic.tools.report.workshop import HOST
@@ -31,7 +32,7 @@ def truth(scene: Scene) -> Truth:
 @pytest.mark.skipif("casadi" in MISSING, reason="CasADi is not installed")
 def test_casadis_rk4_and_ours_take_the_same_velocities_to_rounding(scene: Scene, tmp_path: Path):
     casadi = peers.CasadiRk4(peers.course_of(scene), 100, tmp_path)
-    ours = follow(scene.with_run(method="rk4"), "double", np.array([1.7]))[0]
+    ours = follow(scene.with_run(method=EXPLICIT), "double", np.array([1.7]))[0]
     np.testing.assert_allclose(ours[:3], casadi.state_after(170)[:3], rtol=1e-12, atol=1e-13)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from laconic.scene import read_scene
+from laconic.scene.methods import EXACT, EXPLICIT, STIFF_8
 from laconic.tools.report import accuracy, drift, single, stability
 from laconic.tools.report.collect import PARTS, Report
 from laconic.tools.report.equality import rates_of_peer
@@ -47,7 +48,7 @@ def test_the_error_on_s1_falls_at_the_methods_order(ladder: list[dict], method: 
 
 
 def test_single_precision_keeps_s1_within_three_units_of_its_last_place():
-    for row in single.s1_rows(read_scene("s1"), ("auto", "rk4")):
+    for row in single.s1_rows(read_scene("s1"), ("auto", EXPLICIT)):
         assert row["error_anywhere"] < 3 * np.finfo(np.float32).eps * row["largest_nu"]
 
 
@@ -61,7 +62,7 @@ def test_x_keeps_its_digits_over_ten_million_steps_in_single_precision():
 
 @pytest.mark.parametrize(("real", "limit"), [("double", 1e-13), ("single", 1e-4)])
 def test_exact_flow_keeps_energy_and_yaw_integral_over_a_million_steps(real: str, limit: float):
-    rows = drift.drift_rows(read_scene("paper_three_wheel_free"), (real,), ("exact-flow",))
+    rows = drift.drift_rows(read_scene("paper_three_wheel_free"), (real,), (EXACT,))
     assert rows[-1]["steps"] == 1_000_000
     assert rows[-1]["energy"] < limit
     assert rows[-1]["K"] < limit
@@ -71,7 +72,7 @@ def test_exact_flow_keeps_energy_and_yaw_integral_over_a_million_steps(real: str
 def test_no_method_lets_the_norm_of_random_vehicles_grow_unnoticed(real: str):
     eps = float(np.finfo(np.float64 if real == "double" else np.float32).eps)
     for row in drift.norm_rows((real,), vehicles=400):
-        allowed = 4.0 if row["method"] == "exact-flow" else 2.0**-9 / eps
+        allowed = 4.0 if row["method"] == EXACT else 2.0**-9 / eps
         assert row["worst_growth_ulp"] <= allowed, row
 
 
@@ -85,12 +86,12 @@ def test_auto_follows_very_stiff_vehicles_under_voltages_that_vary_inside_the_st
 
 
 def test_the_map_has_no_silent_failure():
-    rows = stability.map_rows(read_scene("kuka_youbot"), ("auto", "rk4", "exact-flow", "exponential-gauss-8"), (1e4,))
+    rows = stability.map_rows(read_scene("kuka_youbot"), ("auto", EXPLICIT, EXACT, STIFF_8), (1e4,))
     for row in rows:
         assert row["status"].startswith("step") or row["error_nu"] < 1.0, row
     assert all(row["status"] == "ok" for row in rows if row["method"] == "auto")
-    assert any(row["status"] == "step beyond damping limit" for row in rows if row["method"] == "rk4")
-    assert max(row["error_nu"] for row in rows if row["method"] == "exponential-gauss-8") < 1e-14
+    assert any(row["status"] == "step beyond damping limit" for row in rows if row["method"] == EXPLICIT)
+    assert max(row["error_nu"] for row in rows if row["method"] == STIFF_8) < 1e-14
 
 
 def test_the_maps_50_digits_are_the_stiff_solvers_to_its_tolerance():

@@ -17,6 +17,7 @@ from laconic.cli import main as cli
 from laconic.errors import Refused
 from laconic.pictures.method_style import METHOD_STYLES
 from laconic.scene import METHODS, read_scene
+from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, EXPLICIT_8
 from laconic.tools.report import accuracy, pictures, robot
 from laconic.tools.report.collect import PARTS
 from laconic.tools.report.plan import plan
@@ -88,14 +89,14 @@ def test_the_scenes_own_step_is_among_the_steps_and_marked(made):
 
 def test_what_to_take_is_the_quickest_run_that_is_good_enough_in_everything():
     good = {"scene": "x", "real": "double", "status": "ok", "error_pose": 1e-9, "error_wheel": 0.0, "step_s": 0.01}
-    rows = [good | {"method": "rk4", "error_nu": 1e-7, "us_per_second": 5.0},
-            good | {"method": "taylor-8", "error_nu": 1e-10, "us_per_second": 9.0},
-            good | {"method": "exact-flow", "error_nu": 1e-7, "error_pose": 1e-2, "us_per_second": 1.0},
-            good | {"method": "exact-flow-4", "error_nu": np.nan, "us_per_second": 0.5}]
+    rows = [good | {"method": EXPLICIT, "error_nu": 1e-7, "us_per_second": 5.0},
+            good | {"method": EXPLICIT_8, "error_nu": 1e-10, "us_per_second": 9.0},
+            good | {"method": EXACT, "error_nu": 1e-7, "error_pose": 1e-2, "us_per_second": 1.0},
+            good | {"method": EXACT_4, "error_nu": np.nan, "us_per_second": 0.5}]
     found = robot.advice(rows, SimpleNamespace(path=SimpleNamespace(stem="x")))
     take = {(row["wanted_error"], row["real"]): row["method"] for row in found}
-    assert take[1e-3, "double"] == "rk4"
-    assert take[1e-9, "double"] == "taylor-8"
+    assert take[1e-3, "double"] == EXPLICIT
+    assert take[1e-9, "double"] == EXPLICIT_8
     assert take[1e-3, "single"] == "none of the ladder"
 
 
@@ -167,14 +168,14 @@ def test_the_page_of_a_scene_with_friction_tells_no_damping_and_both_types_apart
 
 ERRORS = [{"scene": "x", "method": m, "real": real, "step_s": h, "us_per_second": 1.0 / h, "error_nu": h**4,
            "own": h == 0.01} for m in METHODS for real in ("double", "single") for h in (0.001, 0.01, 0.1)]
-MAP = [{"method": "rk4", "step_s": h, "fastest_decay_per_s": r, "status": "ok", "error_nu": h} for h in (0.01, 0.1)
+MAP = [{"method": EXPLICIT, "step_s": h, "fastest_decay_per_s": r, "status": "ok", "error_nu": h} for h in (0.01, 0.1)
        for r in (1.0, 10.0)]
 DRIFT = [{"method": m, "real": "double", "status": "ok", "steps": n, "K": 1e-15} for m in METHODS[1:]
          for n in range(1, 61)]
 PEERS = [{"who": who, "real": "double", "ms": x, "error_nu": 1.0 / x} for x in (1.0, 2.0) for who in
          (*METHODS[1:], "DOP853 compiled, numba right-hand side", "CVODE Adams", "CVODE BDF", "SciPy Radau")]
 DRAWN = {"error": lambda: pictures.error_against_time(ERRORS, "x", "A robot with a long name, made by somebody"),
-         "stability": lambda: pictures.stability(MAP, "rk4", (0.001, 5.0)),
+         "stability": lambda: pictures.stability(MAP, EXPLICIT, (0.001, 5.0)),
          "drift": lambda: pictures.drift(DRIFT, "double", "K"), "peers": lambda: pictures.precision(PEERS),
          "plan": lambda: plan(read_scene("kuka_youbot"))}
 

@@ -1,4 +1,4 @@
-"""Instructions, stack and bytes of an rk4 step stay where docs/performance.md says they are: the same on every run."""
+"""Instructions, stack and bytes of an explicit step stay where docs/performance.md has them: the same on every run."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import pytest
 
 from laconic.errors import BadInput
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.report import step_cost
 from laconic.tools.report.boards import board_row
 from laconic.tools.report.counting import cachegrind_present, host_instructions
@@ -27,8 +28,8 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
     return Workshop(tmp_path_factory.mktemp("figures"))
 
 
-def rk4(real: str, *, trim: bool, step_s: float, optimisation: str = "-O2") -> Variant:
-    return Variant(read_scene("s1").with_run(method="rk4", step_s=step_s), real, optimisation, trim)
+def explicit(real: str, *, trim: bool, step_s: float, optimisation: str = "-O2") -> Variant:
+    return Variant(read_scene("s1").with_run(method=EXPLICIT, step_s=step_s), real, optimisation, trim)
 
 
 def test_what_a_measurement_lacks_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPatch):
@@ -44,7 +45,7 @@ def test_what_a_measurement_lacks_is_named_with_its_remedy(monkeypatch: pytest.M
 @pytest.mark.parametrize(("real", "build"), list(HOST_MOST))
 def test_instructions_of_a_step_on_the_host(workshop: Workshop, capsys: pytest.CaptureFixture[str], real: str,
                                             build: str):
-    found = host_instructions(workshop.host_program(rk4(real, trim=build == "trimmed", step_s=0.01)))
+    found = host_instructions(workshop.host_program(explicit(real, trim=build == "trimmed", step_s=0.01)))
     with capsys.disabled():
         print(f"\nrk4, {real}, {build}: {found:.1f} instructions a step")
     assert 400 < found < HOST_MOST[real, build]
@@ -66,7 +67,7 @@ def test_a_trimmed_step_is_close_to_a_kernel_written_by_hand(workshop: Workshop,
 def test_figures_of_a_step_on_a_cortex_m4f(workshop: Workshop, capsys: pytest.CaptureFixture[str], optimisation: str,
                                            build: str):
     most = BOARD_MOST[optimisation, build]
-    variant = rk4("single", trim=build == "trimmed", step_s=0.001, optimisation=optimisation)
+    variant = explicit("single", trim=build == "trimmed", step_s=0.001, optimisation=optimisation)
     row = board_row(workshop, M4F, variant)
     with capsys.disabled():
         print(f"\nrk4, Cortex-M4F, {optimisation}, {build}: " + ", ".join(f"{name} {row[name]}" for name in most))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from laconic.errors import BadInput
+from laconic.scene.methods import EXPLICIT, STIFF_4
 from laconic.scene.scene_tables import scene_tables
 from laconic.simulation import simulate
 from laconic.tools.measures import measures_of
@@ -20,7 +21,7 @@ IN_LANES = [
                    "vehicle.wheel[2].bearing_deg~normal(180,1)")),
     ("robotino2", ("vehicle.motor.resistance_ohm=5,7", "vehicle.motor.rotor_inertia_kgm2=1e-5:2e-5:2",
                    "vehicle.wheel[1].inertia_kgm2=0.001,0.002")),
-    ("robotino2", ("vehicle.wheel[2].x_m=-0.13:-0.11:4", "run.method=auto,rk4,exponential-kahan-4",
+    ("robotino2", ("vehicle.wheel[2].x_m=-0.13:-0.11:4", f"run.method=auto,{EXPLICIT},{STIFF_4}",
                    "run.real=double,single", "ground.slope_deg=0,3")),
     ("robotino2", ("initial.velocity_body_m_per_s[1]=0:1:2", "initial.yaw_rate_rad_per_s=0,1",
                    "initial.heading_deg=0,30")),
@@ -98,7 +99,7 @@ def test_a_run_that_is_refused_says_why_as_simulate_does_and_the_others_go_on(sc
 
 
 def test_a_step_that_is_refused_on_the_way_says_when():
-    tables = scene_tables("paper_caster").with_values({"run.method": "rk4"})
+    tables = scene_tables("paper_caster").with_values({"run.method": EXPLICIT})
     plan = make_plan(tables, ("initial.velocity_body_m_per_s[1]=1e155,1e200,1,2,3,1e306",), ())
     rows = run_chunk(plan, None, plan.values(0, plan.runs))
     late = [reason for reason in rows.reasons.values() if reason.at_s is not None]

@@ -11,6 +11,7 @@ import pytest
 from laconic.batch import lanes as batch_lanes
 from laconic.cli.main import run
 from laconic.errors import BadInput, ResultFails
+from laconic.scene.methods import EXPLICIT
 from laconic.scene.scene_tables import scene_tables
 from laconic.tools.sweep import effort, page, sweep
 from laconic.tools.sweep.alone import run_alone
@@ -186,10 +187,10 @@ def test_rows_that_no_memory_holds_are_not_even_tried_side_by_side():
 def test_a_batch_that_steps_long_lets_ctrl_c_through_and_keeps_its_bits(monkeypatch):
     import laconic
     robot = laconic.Vehicle.of(laconic.read_scene("robotino2"))
-    whole = laconic.Batch(robot, 3, "rk4", 1e-3)
+    whole = laconic.Batch(robot, 3, EXPLICIT, 1e-3)
     monkeypatch.setattr(batch_lanes, "MOST_AT_ONCE", 21)
     monkeypatch.setattr(batch_lanes, "FEWEST_AT_ONCE", 1)
-    parts = laconic.Batch(robot, 3, "rk4", 1e-3)
+    parts = laconic.Batch(robot, 3, EXPLICIT, 1e-3)
     for batch in (whole, parts):
         batch.voltage_V[:] = [[1.0, 2.0, 3.0]]
         batch.voltage_V[0, 1] = np.nan

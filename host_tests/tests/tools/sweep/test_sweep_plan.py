@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from laconic.errors import BadInput
+from laconic.scene.methods import EXPLICIT
 from laconic.scene.scene_tables import scene_tables
 from laconic.tools.sweep.plan import make_plan, plan_from
 from laconic.tools.sweep.points import SAMPLINGS
@@ -19,9 +20,9 @@ def plan(*vary: str, **more):
 
 
 def test_a_product_runs_through_the_last_key_fastest():
-    found = plan(f"{MASS}=6:8:3", "run.method=auto,rk4").values(0, 6)
+    found = plan(f"{MASS}=6:8:3", f"run.method=auto,{EXPLICIT}").values(0, 6)
     assert found[MASS].tolist() == [6.0, 6.0, 7.0, 7.0, 8.0, 8.0]
-    assert found["run.method"].tolist() == ["auto", "rk4"] * 3
+    assert found["run.method"].tolist() == ["auto", EXPLICIT] * 3
 
 
 def test_each_point_of_a_grid_takes_the_same_samples():

@@ -18,6 +18,7 @@ from laconic.core import load
 from laconic.errors import ResultFails
 from laconic.scene import METHODS, Outputs, Scene, read_scene
 from laconic.scene.inputs import Input
+from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.simulation import advance_plant
 from laconic.tools.report.binary_tools import run_tool
 from laconic.tools.report.boards import board_row
@@ -153,7 +154,7 @@ def test_without_pose_the_velocities_still_have_the_same_bits(workshop: Workshop
 
 @needs_gcc
 def test_only_the_scenes_method_is_linked_and_no_preparation(workshop: Workshop):
-    scene = read_scene("paper_three_wheel_free").with_run(method="exact-flow")
+    scene = read_scene("paper_three_wheel_free").with_run(method=EXACT)
     program = workshop.host_program(Variant(scene, "double", "-O0", True))
     symbols = run_tool(["nm", str(program)]).split()
     assert METHOD_SYMBOLS & set(symbols) == {"laconic_exact_flow"}
@@ -162,7 +163,7 @@ def test_only_the_scenes_method_is_linked_and_no_preparation(workshop: Workshop)
 
 @needs_board
 def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(workshop: Workshop):
-    row = board_row(workshop, M4F, Variant(read_scene("s1").with_run(method="rk4"), "single", "-Os", True))
+    row = board_row(workshop, M4F, Variant(read_scene("s1").with_run(method=EXPLICIT), "single", "-Os", True))
     assert row["same_bits"]
     assert row["double_helpers"] == 0
     assert row["heap"] == 0

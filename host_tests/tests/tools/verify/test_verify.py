@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from laconic.cli.main import run
+from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, EXPLICIT_8, STIFF, STIFF_4
 from laconic.tools.verify.trajectories import step_that_fits
 
 DATA = Path(__file__).parents[2] / "data"
@@ -32,9 +33,9 @@ def by_name(answer: dict) -> dict[str, dict]:
 
 
 def test_rk4_at_1_ms_is_within_1e_10_everywhere_but_in_the_stiff_case(capsys):
-    status, answer = verify(capsys, TRAJECTORIES, "--method", "rk4", "--step", "1e-3")
+    status, answer = verify(capsys, TRAJECTORIES, "--method", EXPLICIT, "--step", "1e-3")
     assert status == 1
-    assert (answer["method"], answer["step_s"], answer["real"]) == ("rk4", 1e-3, "double")
+    assert (answer["method"], answer["step_s"], answer["real"]) == (EXPLICIT, 1e-3, "double")
     assert len(answer["cases"]) == 12
     for name, case in by_name(answer).items():
         if name != "omni3-stiff":
@@ -44,7 +45,7 @@ def test_rk4_at_1_ms_is_within_1e_10_everywhere_but_in_the_stiff_case(capsys):
 
 
 def test_taylor_8_at_10_ms_is_within_1e_12_everywhere_but_in_the_stiff_case(capsys):
-    status, answer = verify(capsys, TRAJECTORIES, "--method", "taylor-8", "--step", 0.01)
+    status, answer = verify(capsys, TRAJECTORIES, "--method", EXPLICIT_8, "--step", 0.01)
     assert status == 1
     cases = by_name(answer)
     assert cases.pop("omni3-stiff")["status"].startswith("step beyond damping limit")
@@ -52,18 +53,18 @@ def test_taylor_8_at_10_ms_is_within_1e_12_everywhere_but_in_the_stiff_case(caps
 
 
 def test_the_stiff_case_is_refused_with_the_largest_stable_step_and_runs_with_it(capsys):
-    _, answer = verify(capsys, TRAJECTORIES, "--method", "rk4", "--step", "1e-3")
+    _, answer = verify(capsys, TRAJECTORIES, "--method", EXPLICIT, "--step", "1e-3")
     stiff = by_name(answer)["omni3-stiff"]
     assert [stiff[key] for key in ERRORS] == [None, None, None]
     assert stiff["status"].startswith("step beyond damping limit")
     largest = float(re.search(r"at most ([0-9.e-]+) s", stiff["status"])[1])
-    _, within = verify(capsys, TRAJECTORIES, "--method", "rk4", "--step", 0.999 * largest)
+    _, within = verify(capsys, TRAJECTORIES, "--method", EXPLICIT, "--step", 0.999 * largest)
     assert by_name(within)["omni3-stiff"]["status"] == "ok"
-    _, beyond = verify(capsys, TRAJECTORIES, "--method", "rk4", "--step", 0.1 / math.ceil(0.1 / largest - 1))
+    _, beyond = verify(capsys, TRAJECTORIES, "--method", EXPLICIT, "--step", 0.1 / math.ceil(0.1 / largest - 1))
     assert by_name(beyond)["omni3-stiff"]["status"] != "ok"
 
 
-@pytest.mark.parametrize("method", ["auto", "exponential-kahan-4", "exact-flow-4"])
+@pytest.mark.parametrize("method", ["auto", STIFF_4, EXACT_4])
 def test_fourth_order_methods_take_every_case(method, capsys):
     status, answer = verify(capsys, TRAJECTORIES, "--method", method, "--tolerance", "1e-7")
     assert status == 0
@@ -71,14 +72,14 @@ def test_fourth_order_methods_take_every_case(method, capsys):
     assert max(non_stiff) < 1e-10
 
 
-@pytest.mark.parametrize("method", ["exponential-kahan", "exact-flow"])
+@pytest.mark.parametrize("method", [STIFF, EXACT])
 def test_second_order_methods_take_every_case(method, capsys):
     status, _ = verify(capsys, TRAJECTORIES, "--method", method, "--tolerance", "1e-5")
     assert status == 0
 
 
-@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("exponential-kahan", 2), ("exponential-kahan-4", 4),
-                                               ("exact-flow", 2), ("exact-flow-4", 4), ("taylor-8", 8)])
+@pytest.mark.parametrize(("method", "order"), [(EXPLICIT, 4), (STIFF, 2), (STIFF_4, 4),
+                                               (EXACT, 2), (EXACT_4, 4), (EXPLICIT_8, 8)])
 def test_errors_shrink_with_the_order_of_the_method(method, order, capsys):
     coarse = by_name(verify(capsys, TRAJECTORIES, "--method", method, "--step", 0.025)[1])
     fine = by_name(verify(capsys, TRAJECTORIES, "--method", method, "--step", 0.0125)[1])
@@ -126,7 +127,7 @@ def test_a_step_that_does_not_divide_a_segment_is_shortened_to_the_next_that_doe
 
 
 def test_the_table_for_people_names_every_case(capsys):
-    assert run(["verify", str(TRAJECTORIES), "--method", "rk4"]) == 1
+    assert run(["verify", str(TRAJECTORIES), "--method", EXPLICIT]) == 1
     text = capsys.readouterr().out
     for case in json.loads(TRAJECTORIES.read_text())["cases"]:
         assert case["name"] in text

@@ -11,7 +11,7 @@ from cantools.database.can import Message
 from cantools.database.can.signal import Signal
 
 from laconic.can.dbc_file import Dbc
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 
 FLOAT_BITS = (16, 32, 64)
 LARGEST_FLOATS = {16: 65504.0, 32: 3.4028234663852886e38}
@@ -79,7 +79,7 @@ class DbcMessage:
     def signal(self, name: str, key: str = "name", where: str | None = None) -> Signal:
         """A signal by its name."""
         if name not in self.signals:
-            self.fail(key, f"has no signal {name!r}; {nearest_of(name, self.signals)}", where)
+            self.fail(key, f"has no signal {shown(name)}; {nearest_of(name, self.signals)}", where)
         if not self.signals[name].scale:
             self.fail(key, f"has the scale 0 for {name}, so that it says nothing; correct the DBC", where)
         return self.signals[name]

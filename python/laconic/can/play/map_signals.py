@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from laconic.errors import nearest_of
+from laconic.errors import nearest_of, shown
 from laconic.scene.signals import LENGTHS, PER_WHEEL, signal_names
 
 if TYPE_CHECKING:
@@ -70,8 +70,8 @@ def why_unknown(name: str, known: list[str], what: str, wheel_count: int) -> str
     numbered = [each for each in known if each.partition("[")[0] == stem]
     if len(numbered) > 1 or (numbered and "[" in numbered[0]):
         count = "" if not re.search(r"wheel|drive|encoder|voltage|axle", stem) else f" (the vehicle has {wheel_count})"
-        return f"there is no {what} {name!r}{count}; give {numbered[0]} to {[n for n in numbered if '[' in n][-1]}"
-    return f"the model has no {what} {name!r}; {nearest_of(name, known)}"
+        return f"there is no {what} {shown(name)}{count}; give {numbered[0]} to {[n for n in numbered if '[' in n][-1]}"
+    return f"the model has no {what} {shown(name)}; {nearest_of(name, known)}"
 
 
 def split(name: str) -> tuple[str, int]:

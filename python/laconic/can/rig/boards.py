@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import socket
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 from laconic.base.paths import build_dir, built, sources_missing
+from laconic.can.rig import with_parent
 from laconic.can.rig.buses import connected, process_node, virtual_node
 from laconic.can.rig.choices import BOARDS, KINDS
 from laconic.can.rig.client import NodeClient
@@ -42,17 +45,18 @@ def free_port() -> int:
 
 @contextmanager
 def emulated(name: str) -> Iterator[int]:
-    """A board under QEMU; yields the TCP port of its UART."""
+    """A board under QEMU; yields the TCP port of its UART. It also ends with the thread that started it."""
     if reason := why_no_emulation():
         raise BadInput(f"--board {name}: {reason}")
     board, port = BOARDS[name], free_port()
     image = built(f"firmware/laconic-node-{name}.elf")
     serial = f"tcp:127.0.0.1:{port},server=on,wait=off,nodelay=on"
-    command = [QEMU, "-M", board.machine, "-kernel", str(image), "-display", "none", "-monitor", "none",
-               "-serial", serial]
+    emulation = [QEMU, "-M", board.machine, "-kernel", str(image), "-display", "none", "-monitor", "none",
+                 "-serial", serial]
+    command = [sys.executable, with_parent.__file__, str(os.getpid()), *emulation]
     # in another session: Ctrl-C goes to the rig only, which brings the node to rest before it ends it
-    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                          start_new_session=True) as process:
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                          text=True, start_new_session=True) as process:
         try:
             wait_for_port(process, port)
             yield port

@@ -21,7 +21,7 @@ from laconic.can.rig.link import Clock, Link
 from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.socket_line import read_in_chunks
 from laconic.can.rig.wire import ID_BASE
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 
 LARGEST_PORT = 65535
 _channel_numbers = itertools.count()
@@ -30,7 +30,7 @@ _channel_numbers = itertools.count()
 def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
     """A python-can bus; CannotReach names the interface, the channel and a remedy."""
     is_socket = str(channel).startswith("socket://")
-    port = re.fullmatch(r"socket://[^/]+:(\d+)(\D.*)?", str(channel))
+    port = re.fullmatch(r"socket://[^/]+:(\d{1,9})(\D.*)?", str(channel))
     if is_socket and not (port and 0 < int(port[1]) <= LARGEST_PORT):
         raise BadInput(f"--channel {channel}: names no port; give socket://HOST:PORT, PORT from 1 to {LARGEST_PORT}")
     if interface == "slcan" and is_socket:
@@ -146,16 +146,20 @@ def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: A
 @contextmanager
 def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str,
                  last_words: list[str] | None = None) -> Iterator[int]:
-    """A node in a process of its own; yields its TCP port. `last_words` gets what it prints at its end."""
+    """A node in a process of its own; yields its TCP port. `last_words` gets what it prints at its end.
+
+    It also ends with this process, however that ends: it reads a pipe whose other end is here.
+    """
     program = built(f"bin/laconic-node-{real}")
-    command = [str(program), "--id-base", hex(id_base), *arguments]
+    command = [str(program), "--id-base", hex(id_base), "--with-parent", *arguments]
     # in another session: Ctrl-C goes to the rig only, which brings the node to rest before it ends it
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                          start_new_session=True) as process:
         try:
             line = process.stdout.readline() if process.stdout else ""
             found = re.search(r":(\d+)", line)
             if not found:
-                raise CannotReach(f"{program}: did not start (its output: {line.strip()!r})")
+                raise CannotReach(f"{program}: did not start (its output: {shown(line.strip())})")
             yield int(found.group(1))
         finally:
             process.terminate()

@@ -95,13 +95,14 @@ def load_scene(node: NodeClient, scene: Scene, more: Iterable[Parameter] = ()) -
 
 
 def check_run(identity: Identity, scene: Scene, twin: Plant) -> None:
-    """BadInput for a scalar type or a method that the node does not have, with all options that it needs instead."""
+    """BadInput for a scalar type or a method that the node does not have, with all options that it needs instead. Of a
+    method without a bit in IDENTITY.methods the node says so itself, when it is loaded."""
     core, options, what = twin.core, [], []
     number = method_number(core, twin.c.integrator.method)
     if identity.real != scene.run.real:
         what.append(f"run.real is {scene.run.real}, the node computes in {identity.real}")
         options.append(f"--real {identity.real}")
-    if not identity.methods >> number & 1:
+    if number < wire()["IDENTITY"].fields["methods"].bits and not identity.methods >> number & 1:
         names = [name for bit, name in enumerate(core.method_names) if identity.methods >> bit & 1]
         if has_friction(scene.vehicle):  # no other method can step it, so none is advised
             raise BadInput(f"{scene.path}: ground friction or a drive's limits need {core.method_names[number]}, "

@@ -13,21 +13,23 @@ from laconic.can.rig.free_judge import Free
 from laconic.can.rig.interruption import Interruption
 from laconic.can.rig.judge import SameBits, Scaled
 from laconic.can.rig.live import live_view
-from laconic.can.rig.logs import logged
+from laconic.can.rig.logs import Lost, logged
 from laconic.can.rig.options import Options, node_for, read_id_base
 from laconic.can.rig.scaled import read_tolerances
 from laconic.can.rig.stopping import RUNNING, come_to_rest, stop_running
 from laconic.can.rig.trial import Moved, Trial
-from laconic.can.rig.verdict import Judgement
+from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.scene import Scene
 
 
 def run(scene: Scene, options: Options) -> Judgement:
     """One run against a node. What ends it early, a signal included, is a verdict beside those about all that came
-    before; the log is complete, and the node is at rest where it can be reached."""
+    before, and so is a log that takes no more bytes; the log is complete otherwise, and the node is at rest where it
+    can be reached."""
     limits, base = read_tolerances(options.tolerances, scene), read_id_base(options.id_base, scene)
-    with (Interruption() as signals, node_for(options, scene.run.real, base) as node, logged(node.link, options.logs),
-          shown(node, scene, options) as moved):
+    lost = Lost()
+    with (Interruption() as signals, node_for(options, scene.run.real, base) as node,
+          logged(node.link, options.logs, lost), shown(node, scene, options) as moved):
         node.link.may_go_on = signals.check  # between frames, so that no frame and no log entry is cut in two
         trial, notes, is_over = trial_of(node, scene, options, limits), [], False
         estimate: dict[str, float] = {}
@@ -45,6 +47,7 @@ def run(scene: Scene, options: Options) -> Judgement:
                 with signals.shielded():
                     notes += after_early_end(node)
     judgement = trial.judge()
+    judgement.add(*(Verdict("log", False, f"{why}; what was judged does not depend on it") for why in lost.values()))
     judgement.notes += notes
     judgement.figures |= estimate
     return judgement

@@ -11,6 +11,7 @@ from rich.table import Table
 
 from laconic.cli.options import json_flag
 from laconic.errors import LaconicError
+from laconic.scene.methods import EXPLICIT
 
 COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousand_actions_per_s": "thousand actions/s",
            "million_steps_per_s": "million steps/s", "ns_per_step": "ns a step", "times_batch": "over the batch",
@@ -19,7 +20,7 @@ COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousan
            "whole": "flash B, all methods", "ram": "filter B", "soft_double": "soft_double.c", "libgcc": "libgcc",
            "over_whole": "over the whole core", "over_hand": "over by hand", "same_bits": "host's bits",
            "instructions": "instructions", "other_key": "with another key"}
-TITLES = {"step": "A step of rk4 on one core", "batch": "Vehicle-steps on one core",
+TITLES = {"step": f"A step of {EXPLICIT} on one core", "batch": "Vehicle-steps on one core",
           "learn": "Environments under random actions, on one core",
           "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single",
           "soft-double": "Double precision on a Cortex-M4F, in instructions and bytes",
@@ -36,8 +37,8 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     """Times vehicles that step side by side, or counts instructions: WHAT is step, batch, learn, filter, soft-double
     or codes.
 
-    step: scene s1 by rk4, with the whole core, with the core trimmed to the scene, and by a kernel written by hand for
-    this one vehicle, with the core's refusals and without any; all have the same bits.
+    step: scene s1 in explicit steps of fourth order, with the whole core, with the core trimmed to the scene, and by a
+    kernel written by hand for this one vehicle, with the core's refusals and without any; all have the same bits.
 
     batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core: the core's
     batch, the core one vehicle after the other, and the same step in numba and JAX, and MuJoCo, where they are
@@ -58,7 +59,8 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     from laconic.tools.report.many.race import stay_on_one_core
 
     stay_on_one_core()
-    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "filter": _filter, "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
+    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "filter": _filter,
+                   "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
         return

@@ -10,7 +10,7 @@ import click
 from laconic.base.outputs import is_stdout, write_text
 from laconic.cli.options import PICTURES, InputPath, OutputFile, SceneName, json_flag
 from laconic.cli.options_of_logs import SeveralAfter, map_option
-from laconic.errors import BadInput, ResultFails
+from laconic.errors import BadInput, ResultFails, shown
 
 LEFT_OUT = ("session", "run")
 
@@ -85,5 +85,5 @@ def names_in(free: str) -> tuple[str, ...]:
     """The names of --free; BadInput for none or one twice."""
     names = tuple(name.strip() for name in free.split(","))
     if not all(names) or len(set(names)) != len(names):
-        raise BadInput(f"--free {free!r}: give names with commas between them, each once")
+        raise BadInput(f"--free {shown(free)}: give names with commas between them, each once")
     return names

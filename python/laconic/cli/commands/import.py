@@ -54,10 +54,11 @@ def command(robot: Path, out: Path, wheels: tuple[str, ...], rollers: tuple[str,
         {name: Path(folder) for name, folder in pairs("--package", packages, "=").items()}))
     write_text(out, found.text)
     if json_wanted:
-        click.echo(json.dumps({"name": found.name, "wheels": found.wheels, "assumptions": found.assumptions,
-                               "remarks": found.remarks}, indent=1, ensure_ascii=False))
+        click.echo(json.dumps({"name": found.name, "wheels": found.wheels, "supports": found.supports,
+                               "assumptions": found.assumptions, "remarks": found.remarks,
+                               "standing": found.standing.as_json()}, indent=1, ensure_ascii=False))
         return
-    for line in (*found.wheels, *found.assumptions, *found.remarks):
+    for line in (*found.wheels, *found.supports, *found.assumptions, *found.remarks):
         click.echo(line, err=is_stdout(out))
 
 

@@ -93,14 +93,20 @@ def drive(scene: Scene, options: Options) -> int:
                               read_tolerances(options.tolerances, scene), options.channel)
     else:
         judgement = run(scene, options)
-    if options.junit:
-        write_junit(judgement, options.junit, time.perf_counter() - began)
+    unwritten = None
+    try:
+        if options.junit:
+            write_junit(judgement, options.junit, time.perf_counter() - began)
+    except BadInput as error:  # after the verdicts, which are there all the same
+        unwritten = error
     if options.json_wanted:
         click.echo(as_json(judgement))
     else:
         show(judgement)
     if isinstance(judgement.ending, Interrupted):
         click.echo(f"laconic: {judgement.verdicts[0].detail}; {'; '.join(judgement.notes)}", err=True)
+    if unwritten is not None:
+        raise unwritten
     return judgement.exit_status
 
 

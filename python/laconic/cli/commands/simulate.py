@@ -19,8 +19,11 @@ from laconic.core.estimate import Errors, ErrorSizes
 from laconic.errors import Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
 from laconic.scene import METHODS, Scene, read_scene
+from laconic.scene.axle_lines import nearly_one_line
+from laconic.scene.standing import Standing, standing_of
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
 from laconic.simulation.csv_text import csv_text
+from laconic.simulation.run import is_watched
 
 FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
 ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the radius, slid with all of its weight
@@ -76,6 +79,10 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         click.echo(json.dumps(summary(run, out, plot, film) | (enclosure.json if enclosure else {}), indent=1))
     elif not (out and is_stdout(out)):
         print_summary(run, out, plot, film, lines=enclosure.lines if enclosure else ())
+    for line in nearly_one_line(given):
+        warn(f"{given.path}: {line}")
+    if (standing := resting(run)) and standing.tips:
+        warn(f"{given.path}: the robot: {standing.tips}")
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
     if run.refused:
@@ -119,6 +126,19 @@ def enclosed(run: Trajectory) -> Enclosure:
     return Enclosure(tuple(columns), lines_of(study), {"enclosure": as_json(study)})
 
 
+def resting(run: Trajectory) -> Standing | None:
+    """How the robot stands where the scene has data of the ground."""
+    return standing_of(run.scene) if is_watched(run.scene) else None
+
+
+def words_of_standing(run: Trajectory) -> list[str]:
+    """The loads, and whether they hold the robot."""
+    standing = resting(run)
+    if standing is None:
+        return []
+    return [standing.in_words(), *([f"the robot: {standing.tips}"] if standing.tips else [])]
+
+
 def kept_in(*paths: Path | None) -> str:
     """Where the motion up to a refused step is."""
     files = [str(path) for path in paths if path and not is_stdout(path)]
@@ -137,6 +157,7 @@ def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path, further: Ma
 
 def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
     """What was run and where it ended."""
+    standing = resting(run)
     return {
         "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
         "step_s": run.scene.run.step_s, "tolerance": run.scene.run.tolerance, "real": run.scene.run.real,
@@ -144,6 +165,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else None,
+        "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}
 
@@ -198,7 +220,8 @@ def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = (
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
-    for line in (*words_of_errors(run.errors, run.scene.wheel_count), *words_of_slip(run), *lines):
+    for line in (*words_of_errors(run.errors, run.scene.wheel_count), *words_of_slip(run),
+                 *words_of_standing(run), *lines):
         click.echo(line)
     for path in files:
         if path:

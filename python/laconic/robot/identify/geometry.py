@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 from laconic.robot.identify import ground, motion
 from laconic.robot.identify.parameter import Parameter, Parameters, Vehicle
 from laconic.robot.replay.rolling import wheel_radii
@@ -34,7 +34,7 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
                 raise BadInput(f"--free {name}: {scene.path} {motion.why_none(scene, name)}")
             found += made
     if unknown := [name for name in free if name not in makers]:
-        raise BadInput(f"--free: there is no {unknown[0]!r}; {nearest_of(unknown[0], GROUPS)}")
+        raise BadInput(f"--free: there is no {shown(unknown[0])}; {nearest_of(unknown[0], GROUPS)}")
     return Parameters(tuple(found))
 
 

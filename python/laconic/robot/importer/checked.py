@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.robot.importer.placement import Array
 
 WORDS_AT_MOST = 160
@@ -34,11 +34,27 @@ def number(where: str, value: Any) -> float:
     if value is None:
         raise BadInput(f"{where}: is missing; give a number")
     if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
-        raise BadInput(f"{where}: {value[:WORDS_AT_MOST]!r} is no number; give one such as 0.5")
+        raise BadInput(f"{where}: {shown(value[:WORDS_AT_MOST])} is no number; give one such as 0.5")
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise BadInput(f"{where}: {value!r} is no number; give one such as 0.5") from None
+        raise BadInput(f"{where}: {shown(value)} is no number; give one such as 0.5") from None
+
+
+def read_number(text: Any) -> float | None:
+    """A finite number of a part that a robot does not need; None where it has none."""
+    try:
+        return finite("", [text], 1)[0]
+    except BadInput:
+        return None
+
+
+def read_numbers(text: str | None, count: int) -> list[float] | None:
+    """The same of several in one text."""
+    try:
+        return finite("", (text or "").split(), count)
+    except BadInput:
+        return None
 
 
 def mass(where: str, value: Any) -> float:
@@ -64,10 +80,11 @@ def sizes(where: str, values: Sequence[Any]) -> Array:
     return np.array([size(where, "size", value) for value in finite(f"{where}: size", values, 3)])
 
 
-def inertia_matrix(where: str, inertia: Any) -> Array:
-    """3 × 3 from ixx, ixy …"""
-    ixx, ixy, ixz, iyy, iyz, izz = finite(f"{where}: inertia", [
-        getattr(inertia, name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")], 6)
+def inertia_matrix(where: str, inertia: Mapping[str, Any]) -> Array:
+    """3 × 3 from ixx, ixy …, of which those off the diagonal may be left out."""
+    ixx, iyy, izz = (finite(f"{where}: inertia {name}", [inertia.get(name)], 1)[0] for name in ("ixx", "iyy", "izz"))
+    ixy, ixz, iyz = (finite(f"{where}: inertia {name}", [inertia.get(name, 0.0)], 1)[0]
+                     for name in ("ixy", "ixz", "iyz"))
     return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
 
 
@@ -83,5 +100,5 @@ def unit_vector(where: str, axis: Sequence[Any]) -> Array:
 
 def words_of(error: Exception) -> str:
     """What a library says of its failure, in one short line."""
-    words = " ".join(str(error).split()) or type(error).__name__
+    words = " ".join(str(error).split()) or "it gives no reason"
     return words if len(words) <= WORDS_AT_MOST else words[:WORDS_AT_MOST] + "…"

@@ -29,7 +29,7 @@ def read_robot(path: Path, answers: Answers) -> Robot:
     if form == "urdf":
         return read_urdf(path, answers.packages)
     if form == "mjcf":
-        return read_mjcf(path, answers.model)
+        return read_mjcf(path, answers.packages, answers.model)
     return read_sdf(path, answers.packages, answers.model)
 
 

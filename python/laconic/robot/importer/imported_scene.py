@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,35 +12,51 @@ import numpy as np
 
 from laconic.errors import BadInput, Refused
 from laconic.robot.importer.answers import Answers
+from laconic.robot.importer.axle_lines import brought_to_meet, straightened
+from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
+from laconic.robot.importer.dropped import drives_elsewhere, dropped_of, idle_of
 from laconic.robot.importer.formats import read_robot
 from laconic.robot.importer.plausible import doubts_of
+from laconic.robot.importer.push import (
+    ACCELERATION_M_PER_S2,
+    PUSH_S,
+    REACHES,
+    Axles,
+    Push,
+    listed_steps,
+    push_ahead,
+    smallest,
+)
 from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import Robot
 from laconic.robot.importer.rollers import Kind, kinds_of
 from laconic.robot.importer.supports import Support, find_supports
 from laconic.robot.importer.wheels import FoundWheel, Ground, find_wheels
 from laconic.scene import Scene, scene_of
+from laconic.scene.axle_lines import meeting_point
 from laconic.scene.scene_text import Comments, lines_of
+from laconic.scene.standing import Standing, standing_of
 from laconic.scene.table import Table
 
 DIGITS = 9
-ACCELERATION_M_PER_S2 = 0.3
-PUSH_S = 1.0
+SQUARE = 1e-12  # of an axle along or across the body
 TOUCHING_M = 1e-9  # a centre so little below the ground is on it, but for rounding
-ASIDE = 0.05  # of the way ahead, at which a push still is one ahead
 DURATION_S, STEP_S = 3.0, 0.01
 FRICTION_STEP_S = 0.001
 SHARED = {"radius_m": ("wheel_radius_m", "by the shapes of the wheels, unless said with --radius"),
           "inertia_kgm2": ("wheel_inertia_kgm2", "about the axle, rollers included, without gear and rotor"),
           "motor_damping_Nms": ("motor_damping_Nms", "damping of the joints")}
+WITH_ARMATURE = "about the axle, rollers and the armature of joints included"
 NEED_SLIP = {  # refusals of the core whose remedy is an option here
     "nothing moves": "plain wheels on these axles prevent every motion",
     "straight only": "plain wheels on parallel axles that are not one line only drive straight, whatever motors do"}
 MOTOR = ("# The file does not tell the motors. With them, voltage_V[i] drives wheel i; their data sheet gives:",
          "#   [vehicle.motor]", "#   resistance_ohm = …", "#   torque_constant_Nm_per_A = …",
-         "#   back_emf_Vs_per_rad = …", "#   gear_ratio = …")
+         "#   back_emf_Vs_per_rad = …")
+GEAR = "#   gear_ratio = …"
 DAMPED = ("#   viscous_friction_Nms = …      # the motor_damping_Nms below, divided by gear_ratio²",
           "# [vehicle.motor] takes the place of every motor_gain_Nm_per_V and motor_damping_Nms: take these lines out.")
+LOADS = ("normal_load_N", "support_load_N")  # outputs where friction makes them matter
 
 
 @dataclass(frozen=True)
@@ -53,6 +68,8 @@ class Imported:
     wheels: tuple[str, ...]
     assumptions: tuple[str, ...]
     remarks: tuple[str, ...]
+    supports: tuple[str, ...]
+    standing: Standing
 
 
 def import_robot(path: Path, answers: Answers) -> Imported:
@@ -60,11 +77,16 @@ def import_robot(path: Path, answers: Answers) -> Imported:
     robot = read_robot(path, answers)
     ground = find_wheels(robot, answers)
     answers.check([wheel.name for wheel in ground.wheels])
-    kinds = kinds_of(str(path), ground.wheels, answers)
+    wheels, straight = straightened(ground.wheels)
+    kinds = kinds_of(str(path), wheels, answers)
+    if all(kind.kind == "fixed" for kind in kinds):
+        wheels, meeting = brought_to_meet(wheels)
+        straight = [*straight, *meeting]
+    ground = replace(ground, wheels=tuple(wheels), remarks=(*straight, *ground.remarks))
     whole = add_up(robot.links.values())
     if whole.mass_kg <= 0.0:
         raise BadInput(f"{path}: all links are without mass; give them an <inertial>")
-    return _Writer(robot, ground, kinds, whole, find_supports(robot, ground), answers).imported()
+    return _Writer(robot, ground, kinds, whole, answers).imported()
 
 
 def in_one_line(text: str) -> str:
@@ -76,12 +98,13 @@ def in_one_line(text: str) -> str:
 class _Writer:
     """Collects the tables and their comments."""
 
-    def __init__(self, robot: Robot, ground: Ground, kinds: Sequence[Kind], whole: RigidBody,
-                 supports: Sequence[Support], answers: Answers):
-        self.robot, self.ground, self.kinds, self.whole = robot, ground, kinds, whole
-        self.supports, self.answers = supports, answers
+    def __init__(self, robot: Robot, ground: Ground, kinds: Sequence[Kind], whole: RigidBody, answers: Answers):
+        self.robot, self.ground, self.kinds, self.whole, self.answers = robot, ground, kinds, whole, answers
+        self.supports, untouching = find_supports(robot, ground)
+        self.idle = idle_of(ground)
         self.comments: Comments = {}
-        self.remarks = [*robot.remarks, *ground.remarks, *doubts_of(robot, ground, whole)]
+        self.remarks = [*robot.remarks, *ground.remarks, *untouching, *doubts_of(robot, ground, whole, answers),
+                        *dropped_of(ground, answers)]
 
     def imported(self) -> Imported:
         """All tables, checked by the core."""
@@ -93,16 +116,48 @@ class _Writer:
         else:
             self.remark_friction()
         run = {"run": {"duration_s": DURATION_S, "step_s": FRICTION_STEP_S if slips else STEP_S}}
-        data |= {"input": self.push(self.checked(data | run))} | run
+        scene = self.checked(data | run)
+        standing = standing_of(scene)
+        self.remark_standing(scene, standing)
+        data |= {"input": self.push(scene)} | run
         if slips:
-            data["outputs"] = {"every_s": STEP_S}
+            data["outputs"] = {"every_s": STEP_S, "signals": self.signals(data)}
         self.checked(data)
         assumed = [f"{_path(where)}: {why}" for where, why in self.comments.items()
                    if why.startswith("assumption") and where[-1] != "kind"]  # of kinds, words() tells
+        for index, (each, load_N) in enumerate(zip(self.supports, standing.support_N, strict=True)):
+            self.comments["vehicle", "support", str(index), "x_m"] = f"{each.why}; carries {standing.share(load_N)}"
         comments = {where: in_one_line(why) for where, why in self.comments.items()}
         text = "\n".join([*map(in_one_line, self.head()), *lines_of(data, comments)]) + "\n"
-        words, remarks = tuple(map(in_one_line, self.words())), tuple(map(in_one_line, self.remarks))
-        return Imported(self.robot.name, text, words, tuple(map(in_one_line, assumed)), remarks)
+        words, remarks = tuple(map(in_one_line, self.words(standing))), tuple(map(in_one_line, self.remarks))
+        supports = tuple(in_one_line(each) for each in self.words_of_supports(standing))
+        return Imported(self.robot.name, text, words, tuple(map(in_one_line, assumed)), remarks, supports, standing)
+
+    def signals(self, data: dict[str, Any]) -> list[str]:
+        """The usual outputs, and the loads, by which wheels grip or slip."""
+        from laconic.simulation.run import USUAL
+
+        return [*USUAL, LOADS[0], *(LOADS[1:] if data["vehicle"].get("support") else ())]
+
+    def remark_standing(self, scene: Scene, standing: Standing) -> None:
+        """Says what tips the robot, and that plain wheels leave it a rotation alone."""
+        if standing.tips:
+            self.remarks.append(f"the robot: {standing.tips}")
+        if scene.model(scene.core()).dof == 1 and not self.answers.friction_coefficient:
+            self.remarks.append("plain wheels on these axles leave the robot one motion alone, a rotation about the "
+                                f"point where the axles meet{self.meeting()}")
+
+    def meeting(self) -> str:
+        """Where that is, and the angle that makes it so."""
+        lines = lines_of_axles(self.ground.wheels)
+        point = meeting_point(lines)
+        if point is None:
+            return ""
+        index = max(range(len(lines)), key=lambda k: lines[0].angle_to(lines[k]))
+        angle = np.degrees(lines[0].angle_to(lines[index]))
+        names = [wheel.name for wheel in self.ground.wheels]
+        return (f", ({point[0]:.4g}, {point[1]:.4g}) m: the axle of {names[index]} is {angle:.3g}° from that of "
+                f"{names[0]}")
 
     def ground_table(self, wheels: list[dict[str, Any]]) -> dict[str, float]:
         """`[ground]`, with the dry friction of the axles; a wheel whose own is another keeps it."""
@@ -141,12 +196,18 @@ class _Writer:
         """What the scene is, and what was left open."""
         told = [f"# {self.robot.name}, imported from {self.robot.path.name} ({self.robot.format}). The body frame is "
                 "that of link",
-                f"# {self.robot.base}; all joints are in their zero position.", *MOTOR]
+                f"# {self.robot.base}; all joints are in their zero position.", *MOTOR, self.gear()]
         if any(wheel.joint.damping_Nms > 0.0 for wheel in self.ground.wheels):
             told += DAMPED
         if self.remarks:
             told += ["# Seen on the way:", *(f"#   {remark}" for remark in self.remarks)]
         return told
+
+    def gear(self) -> str:
+        """The line of the gear ratio, with what the file tells of it."""
+        gears = {command.gear: command.what for wheel in self.ground.wheels for command in wheel.joint.commands
+                 if command.gear}
+        return GEAR + (f"      # {', '.join(f'{gear:g} ({what})' for gear, what in gears.items())}" if gears else "")
 
     def vehicle(self) -> dict[str, Any]:
         """`[vehicle]`: totals, what all wheels share, wheels, supports."""
@@ -188,13 +249,17 @@ class _Writer:
         off = float(np.linalg.norm(wheel.hub_m - wheel.joint.point_m))
         if off > 1e-3:
             self.comments[(*where, "x_m")] = f"middle of its shape, {1e3 * off:.0f} mm along the axle from the joint"
-        table: dict[str, Any] = {"kind": kind.kind, "x_m": _rounded(wheel.hub_m[0]), "y_m": _rounded(wheel.hub_m[1]),
-                                 "axle_deg": _rounded(np.degrees(wheel.axle_rad))}
+        exact = _rounded if min(map(abs, wheel.axle[:2])) < SQUARE else float  # lines of any other direction must meet
+        table: dict[str, Any] = {"kind": kind.kind, "x_m": exact(wheel.hub_m[0]), "y_m": exact(wheel.hub_m[1]),
+                                 "axle_deg": exact(np.degrees(wheel.axle_rad))}
         if kind.roller_deg is not None:
             table["roller_deg"] = _rounded(kind.roller_deg)
         table |= {"radius_m": _rounded(wheel.radius_m), "inertia_kgm2": _rounded(wheel.inertia_kgm2)}
         if wheel.joint.damping_Nms > 0.0:
             table["motor_damping_Nms"] = _rounded(wheel.joint.damping_Nms)
+        elif wheel.joint in self.idle:
+            table["driven"] = False
+            self.comments[(*where, "driven")] = "the file commands other joints, and not this one"
         return table
 
     def support(self, index: int, support: Support) -> dict[str, Any]:
@@ -212,6 +277,8 @@ class _Writer:
                 continue
             found[of_all] = value
             self.comments["vehicle", of_all] = why
+            if key == "inertia_kgm2" and any(wheel.joint.armature_kgm2 for wheel in self.ground.wheels):
+                self.comments["vehicle", of_all] = WITH_ARMATURE
             for index, wheel in enumerate(wheels):
                 if wheel.get(key, 0.0) == value:
                     wheel.pop(key, None)
@@ -222,72 +289,58 @@ class _Writer:
         return found
 
     def push(self, scene: Scene) -> list[dict[str, Any]]:
-        """Torques that push the robot ahead, so that the scene shows a motion; none where it cannot roll ahead."""
-        rolling = rolling_ahead(scene)
-        if not rolling.any():
-            self.remarks.append("the wheels do not let the robot roll straight ahead; no inputs are given")
-            return []
+        """Torques that push the robot ahead, so that the scene shows a motion; none where it cannot roll ahead. Where a
+        wheel drives it that is not modelled, a force takes its place."""
         slips = "ground" in scene.vehicle  # only there have the axles their friction
-        scale = scene.vehicle["mass_kg"] * ACCELERATION_M_PER_S2 / float(rolling @ rolling)
-        inputs: list[dict[str, Any]] = []
-        self.comments["input", "0", "signal"] = (f"assumption: these torques push ahead with about "
-                                                 f"{ACCELERATION_M_PER_S2:g} m/s² "
-                                                 f"for {PUSH_S:g} s")
-        damping = np.array([wheel.joint.damping_Nms for wheel in self.ground.wheels])
-        speed_m_per_s = speed_of_drag(float(damping @ rolling**2) / scene.vehicle["mass_kg"])
-        for index, rate in enumerate(rolling):
-            if abs(rate) > 1e-9 * np.abs(rolling).max():
-                rubbing = np.sign(rate) * self.ground.wheels[index].joint.friction_Nm if slips else 0.0
-                inputs.append({"signal": f"axle_torque_Nm[{index + 1}]", "kind": "steps", "t_s": [0.0, PUSH_S],
-                               "value": [_rounded((scale + damping[index] * speed_m_per_s) * rate + rubbing), 0.0]})
-        if goes_ahead(scene, {each["signal"]: each["value"][0] for each in inputs}):
-            return inputs
-        del self.comments["input", "0", "signal"]
-        self.remarks.append("torques that roll the wheels ahead push the robot aside, too, by where its wheels and its "
-                            "centre of mass are; no inputs are given")
-        return []
+        wheels = self.ground.wheels
+        axles = Axles(np.array([wheel.joint.damping_Nms for wheel in wheels]),
+                      np.array([wheel.joint.friction_Nm if slips else 0.0 for wheel in wheels]),
+                      np.array([wheel.joint not in self.idle for wheel in wheels]))
+        elsewhere = drives_elsewhere(self.ground)
+        by_force = not axles.are_driven.any()
+        found = push_ahead(scene, axles, by_force)
+        if found.why_not:
+            self.remarks.append(self.named(found.why_not))
+            return []
+        what = "these torques push"
+        if by_force:
+            what = f"this force takes the place of {' and '.join(elsewhere)} and pushes"
+        self.comments["input", "0", "signal"] = f"assumption: {what} ahead {self.reached(found)}"
+        least = smallest([*found.values.values()])
+        return listed_steps({signal: value for signal, value in found.values.items() if abs(value) > least}, _rounded)
 
-    def words(self) -> list[str]:
+    def named(self, text: str) -> str:
+        """With the joint's name behind the number of a wheel."""
+        for index, wheel in enumerate(self.ground.wheels, 1):
+            text = text.replace(f"of wheel {index} is", f"of wheel {index} ({wheel.name}) is")
+        return text
+
+    @staticmethod
+    def reached(found: Push) -> str:
+        """How fast the push is, as far as wheels do not slip."""
+        wanted = ACCELERATION_M_PER_S2 * PUSH_S
+        if abs(found.speed_m_per_s / wanted - 1.0) <= REACHES:
+            return f"with about {ACCELERATION_M_PER_S2:g} m/s² for {PUSH_S:g} s"
+        return f"for {PUSH_S:g} s and reach {found.speed_m_per_s:.2g} m/s, as wheels slip"
+
+    def words(self, standing: Standing) -> list[str]:
         """A line for each wheel."""
         return [f"wheel {index + 1}: {wheel.name}, {kind.kind}"
                 + (f" with rollers at {kind.roller_deg:.4g}°" if kind.roller_deg is not None else "")
-                + f", radius {wheel.radius_m:.4g} m at {_place(wheel)} m; {kind.why}"
+                + f", radius {wheel.radius_m:.4g} m at {_place(wheel)} m; {kind.why}; carries "
+                + standing.share(standing.wheel_N[index])
                 for index, (wheel, kind) in enumerate(zip(self.ground.wheels, self.kinds, strict=True))]
+
+    def words_of_supports(self, standing: Standing) -> list[str]:
+        """The same of each support."""
+        return [f"support {index + 1}: {each.name} at ({each.x_m:.4g}, {each.y_m:.4g}) m; carries "
+                + standing.share(standing.support_N[index]) for index, each in enumerate(self.supports)]
 
 
 def _place(wheel: FoundWheel) -> str:
     """Where it is, seen from above."""
     x, y = map(_rounded, wheel.hub_m[:2])
     return f"({x:.4g}, {y:.4g})"
-
-
-def rolling_ahead(scene: Scene) -> np.ndarray:
-    """Wheel speeds at 1 m/s ahead (rad/s); zeros where fixed wheels do not allow that motion."""
-    core = scene.core()
-    found = core.matrices(scene.c_vehicle(core))
-    if found.constraint_rows.size and np.abs(found.constraint_rows[:, 0]).max() > 1e-9:
-        return np.zeros(scene.wheel_count)
-    return np.asarray(found.wheel_rows[:, 0] / scene.vehicle["wheel_radius_m"])
-
-
-def goes_ahead(scene: Scene, torques: dict[str, float]) -> bool:
-    """Whether a push from rest moves the robot along its ξ axis, aside by a small part of the way alone."""
-    plant = scene.plant(scene.core())
-    try:
-        plant.run(torques, round(PUSH_S / scene.run.step_s))
-    except Refused:
-        return False
-    way_m = plant.pose.x_m
-    return way_m > 0.0 and max(abs(plant.pose.y_m), way_m * abs(plant.pose.heading_rad)) <= ASIDE * way_m
-
-
-def speed_of_drag(decay_per_s: float) -> float:
-    """The speed (m/s) whose damping a steady push must add, so that it ends as fast as without any.
-
-    Half the speed at the end where damping is weak, nearly all of it where damping balances the push long before.
-    """
-    k = decay_per_s * PUSH_S
-    return ACCELERATION_M_PER_S2 * PUSH_S * (1.0 / -math.expm1(-k) - 1.0 / k if k > 1e-6 else 0.5)
 
 
 def _path(where: tuple[str, ...]) -> str:

@@ -5,6 +5,7 @@ It works in a process that is bounded in time and memory: a file of a few lines 
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,22 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot.importer.bounded import Library, bounded
 from laconic.robot.importer.checked import DISSIPATION, finite, mass, not_negative, words_of
-from laconic.robot.importer.mjcf_left_out import left_out
+from laconic.robot.importer.mjcf_files import check_files
+from laconic.robot.importer.mjcf_left_out import commands_of, left_out
 from laconic.robot.importer.placement import Array, inverse, placement, point_of
-from laconic.robot.importer.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
+from laconic.robot.importer.robot_tree import (
+    BALL,
+    FIXED,
+    HINGE,
+    SLIDE,
+    TURNS_ROUND_RAD,
+    Command,
+    Joint,
+    Link,
+    Robot,
+    Shape,
+    check_count,
+)
 from laconic.robot.importer.xml_file import xml_root
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
@@ -24,8 +38,9 @@ MUJOCO = Library("MuJoCo", "the count of a <replicate> or <composite>, a mesh, t
                  "for too much")
 
 
-def read_mjcf(path: Path, model_name: str | None) -> Robot:
+def read_mjcf(path: Path, packages: Mapping[str, Path], model_name: str | None) -> Robot:
     """The heaviest body that stands in the world, or the one of this name, with all that hangs on it."""
+    check_files(path, packages)
     robot: Robot = bounded(MUJOCO, _read, path, model_name)
     return robot
 
@@ -33,6 +48,7 @@ def read_mjcf(path: Path, model_name: str | None) -> Robot:
 def _read(path: Path, model_name: str | None) -> Robot:
     model, data, warnings = _compiled(path)
     base = _base(path, model, model_name)
+    check_count(path, int(model.nbody))
     inside = [body for body in range(1, model.nbody) if model.body_rootid[body] == base]
     for body in inside:
         _check_numbers(f"{path}: body {model.body(body).name or body}", model, data, body)
@@ -41,9 +57,10 @@ def _read(path: Path, model_name: str | None) -> Robot:
     names = {body: model.body(body).name or f"body {body}" for body in inside}
     links = {names[body]: _link(model, data, body, names[body], back) for body in inside}
     joints: dict[str, Joint] = {}
+    commands = commands_of(model)
     for body in inside:
         if body != base:
-            joint = _joint(path, model, data, body, names, back)
+            joint = _joint(path, model, data, body, names, back, commands)
             joints[joint.name] = joint
     title = model.body(base).name or path.stem
     return Robot(title, path, "MJCF", names[base], links, joints, tuple(left_out(model, inside))).check()
@@ -128,7 +145,8 @@ def _shape(model: Any, data: Any, geom: int, back: Array) -> Shape | None:
     return None
 
 
-def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], back: Array) -> Joint:
+def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], back: Array,
+           commands: Mapping[int, Sequence[Command]]) -> Joint:
     """A body's joint; without one it is fixed. Of several, all but one must be slides (a suspension)."""
     parent = names[int(model.body_parentid[body])]
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
@@ -144,6 +162,10 @@ def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], 
     at = int(model.jnt_dofadr[joint])
     damping, friction = (not_negative(f"{path}: joint {name}", what, numbers[at], DISSIPATION[what])
                          for what, numbers in (("damping", model.dof_damping), ("friction", model.dof_frictionloss)))
-    limited = bool(model.jnt_limited[joint]) and float(np.ptp(model.jnt_range[joint])) < TURNS_ROUND_RAD
+    range_rad = float(np.ptp(model.jnt_range[joint])) if model.jnt_limited[joint] else np.inf
     axis = back[:3, :3] @ data.xaxis[joint] if kind in (HINGE, SLIDE) else np.zeros(3)
-    return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis, limited, damping, friction)
+    armature = not_negative(f"{path}: joint {name}", "armature", model.dof_armature[at], "kg·m²")
+    stiffness = float(np.ravel(model.jnt_stiffness[joint])[0])
+    return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis,
+                 range_rad < TURNS_ROUND_RAD, damping, friction, range_rad, armature if kind == HINGE else 0.0,
+                 tuple(commands.get(joint, ())), (f"spring of {stiffness:g} N·m/rad",) if stiffness > 0.0 else ())

@@ -7,8 +7,12 @@ from collections.abc import Collection
 from typing import Any
 
 from laconic.robot.importer.gravity import gravity_left_out, listed
+from laconic.robot.importer.robot_tree import Command
 
 JOINT = 2  # mjtEq
+AT_JOINT = (0, 1)  # mjtTrn: mjTRN_JOINT, mjTRN_JOINTINPARENT
+AT_TENDON = 3
+OF_JOINT = 1  # mjtWrap
 CONSTRAINTS = {0: "connect", 1: "weld", 2: "joint", 3: "tendon", 4: "flex"}
 
 
@@ -41,6 +45,27 @@ def _joined(model: Any, equality: int) -> str:
 def _actuators(model: Any) -> list[str]:
     names = [model.actuator(each).name or str(each + 1) for each in range(model.nu)]
     return [f"actuators are not taken over: {listed(names)}; the inputs are torques at the axles"] if names else []
+
+
+def commands_of(model: Any) -> dict[int, list[Command]]:
+    """The actuators of each joint, also by way of a tendon."""
+    found: dict[int, list[Command]] = {}
+    for each in range(model.nu):
+        gear = float(model.actuator_gear[each][0])
+        command = Command(f"actuator {model.actuator(each).name or each + 1}", None if gear in (0.0, 1.0) else gear)
+        for joint in _joints_of(model, int(model.actuator_trntype[each]), int(model.actuator_trnid[each][0])):
+            found.setdefault(joint, []).append(command)
+    return found
+
+
+def _joints_of(model: Any, kind: int, of: int) -> list[int]:
+    """What an actuator acts on."""
+    if kind in AT_JOINT:
+        return [of]
+    if kind != AT_TENDON:
+        return []
+    wraps = range(int(model.tendon_adr[of]), int(model.tendon_adr[of]) + int(model.tendon_num[of]))
+    return [int(model.wrap_objid[each]) for each in wraps if int(model.wrap_type[each]) == OF_JOINT]
 
 
 def _tendons(model: Any) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from laconic.robot.importer.answers import Answers, answer
 from laconic.robot.importer.rigid_body import RigidBody
 from laconic.robot.importer.robot_tree import Robot
 from laconic.robot.importer.wheels import Ground
@@ -14,9 +15,10 @@ FAR = 10.0         # times the way to the farthest wheel's rim, beyond which no 
 COUNTED = "counted as it is given"
 
 
-def doubts_of(robot: Robot, ground: Ground, whole: RigidBody) -> list[str]:
+def doubts_of(robot: Robot, ground: Ground, whole: RigidBody, answers: Answers) -> list[str]:
     """A line for each number, or pair of them, that no robot has."""
-    return [*moments_of_no_body(robot), *lighter_than_air(ground, whole), *farther_than_the_robot(ground, whole)]
+    return [*moments_of_no_body(robot), *inertias_of_no_wheel(ground, answers), *lighter_than_air(ground, whole),
+            *farther_than_the_robot(ground, whole)]
 
 
 def moments_of_no_body(robot: Robot) -> list[str]:
@@ -30,6 +32,18 @@ def moments_of_no_body(robot: Robot) -> list[str]:
         elif most > (1.0 + THIN) * (least + middle):
             found.append(f"link {link.name} has a principal moment of {most:.3g} kg·m², more than its other two "
                          f"together, which no body has; it is {COUNTED}")
+    return found
+
+
+def inertias_of_no_wheel(ground: Ground, answers: Answers) -> list[str]:
+    """All of a wheel's mass lies within its radius, so its moment about the axle is m r² at most."""
+    found = []
+    for wheel in ground.wheels:
+        own, most = wheel.inertia_kgm2 - wheel.joint.armature_kgm2, wheel.mass_kg * wheel.radius_m**2
+        if answer(answers.inertia_kgm2, wheel.name) is None and own > (1.0 + THIN) * most:
+            found.append(f"wheel {wheel.name} has an inertia of {own:.3g} kg·m² about its axle, more than m r² = "
+                         f"{most:.3g} kg·m² of {wheel.mass_kg:.3g} kg within a radius of {wheel.radius_m:.3g} m, which "
+                         f"no wheel has; it is {COUNTED}; --wheel-inertia {wheel.name}=KGM2 says another")
     return found
 
 

@@ -12,13 +12,32 @@ from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, cut, nearest_of
 from laconic.robot.importer.placement import Array, point_of
 
 HINGE, SLIDE, FIXED, BALL = "hinge", "slide", "fixed", "ball"
 TURNS_ROUND_RAD = 4.0 * np.pi  # a hinge with a wider range than this counts as one without limits
 LONGEST_SHOWN = 60  # of a name in a message
+MOST_LINKS = 5000  # ten times the largest robots, with every roller of their wheels a link
 CORNERS = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Friction of a shape: along `direction` (unit vector in the frame of the base; None where the file gives none) and
+    across it."""
+
+    along: float
+    across: float
+    direction: Array | None = None
+
+
+@dataclass(frozen=True)
+class Command:
+    """What moves a joint, in words; `gear` is how often its motor turns while the joint turns once."""
+
+    what: str
+    gear: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +53,12 @@ class Shape:
     size: tuple[float, ...] = ()
     points: Array | None = None
     collides: bool = True
+    surface: Surface | None = None
 
     @classmethod
-    def box(cls, placed: Array, half: Array, collides: bool) -> Shape:
+    def box(cls, placed: Array, half: Array, collides: bool, surface: Surface | None = None) -> Shape:
         """A box with these half lengths of its edges."""
-        return cls("box", placed, points=point_of(placed, half * CORNERS), collides=collides)
+        return cls("box", placed, points=point_of(placed, half * CORNERS), collides=collides, surface=surface)
 
     def radius_about(self, point: Array, axis: Array) -> float:
         """The largest distance of its surface from a line through `point` along the unit vector `axis`."""
@@ -56,6 +76,25 @@ class Shape:
         low = points[points[:, 2] < points[:, 2].min() + 1e-6]
         return np.asarray((low.min(axis=0) + low.max(axis=0)) / 2.0)
 
+    def across(self, point: Array, axis: Array) -> Array:
+        """N × 2 points of its outline, seen along the unit vector `axis` from `point`; of a sphere that of its largest
+        circle."""
+        one, other = square_to(axis)
+        if self.kind != "sphere":
+            return np.asarray((self.outline() - point) @ np.column_stack([one, other]))
+        centre = (self.placed[:3, 3] - point) @ np.column_stack([one, other])
+        turn = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
+        return np.asarray(centre + self.size[0] * np.column_stack([np.cos(turn), np.sin(turn)]))
+
+    def thinnest(self) -> float:
+        """Its smallest extent along an axis of its own; of a mesh along an axis of the base."""
+        if self.kind == "sphere":
+            return 2.0 * self.size[0]
+        if self.kind == "cylinder":
+            return 2.0 * min(self.size)
+        points = self.outline() @ self.placed[:3, :3] if self.kind == "box" else self.outline()
+        return float(np.ptp(points, axis=0).min())
+
     def outline(self) -> Array:
         """Points of its surface: corners, or the rims of a cylinder."""
         if self.points is not None:
@@ -64,6 +103,14 @@ class Shape:
         rim = np.column_stack([self.size[0] * np.cos(turn), self.size[0] * np.sin(turn), np.zeros(len(turn))])
         half = np.array([0.0, 0.0, self.size[1] if len(self.size) > 1 else 0.0])
         return np.vstack([rim - half, rim + half]) @ self.placed[:3, :3].T + self.placed[:3, 3]
+
+
+def square_to(axis: Array) -> tuple[Array, Array]:
+    """Two unit vectors that are square to a unit vector and to each other."""
+    least = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    one = np.cross(axis, least)
+    one = one / np.linalg.norm(one)
+    return one, np.asarray(np.cross(axis, one))
 
 
 def _distances(points: Array, point: Array, axis: Array) -> Array:
@@ -82,6 +129,7 @@ class Link:
     shapes: tuple[Shape, ...] = ()
     has_inertia: bool = True
     unread: tuple[str, ...] = ()  # meshes that could not be had, and why
+    unread_collides: bool = False  # whether one of them collides
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +145,10 @@ class Joint:
     is_limited: bool = False
     damping_Nms: float = 0.0
     friction_Nm: float = 0.0  # dry
+    range_rad: float = np.inf  # between its limits
+    armature_kgm2: float = 0.0  # of what turns with it and is no link, such as a rotor behind its gear
+    commands: tuple[Command, ...] = ()
+    left_out: tuple[str, ...] = ()  # numbers of the file that no scene has, in words
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,12 +212,19 @@ class Robot:
         return [self.links[name] for name in found]
 
 
+def check_count(path: Path, count: int) -> None:
+    """BadInput for more links than any robot has, before they are read."""
+    if count > MOST_LINKS:
+        raise BadInput(f"{path}: has {count} links, more than the {MOST_LINKS} that are read; take out those that are "
+                       "not the robot's")
+
+
 def base_of(path: Path, links: Iterable[str], children: Iterable[str]) -> str:
     """The only link that is no joint's child; BadInput where there is none or several."""
     hanging = set(children)
     roots = [name for name in links if name not in hanging]
     if len(roots) != 1:
-        names = ", ".join(each[:LONGEST_SHOWN] for each in roots[:4])
+        names = ", ".join(cut(each) for each in roots[:4])
         raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({names or 'a loop'}); a robot has one, "
                        "its base")
     return roots[0]

@@ -13,13 +13,16 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.importer.answers import Answers, answer
-from laconic.robot.importer.placement import Array, rotation_about
+from laconic.robot.importer.axle_lines import lines_of, nearly_meet
+from laconic.robot.importer.placement import rotation_about
+from laconic.robot.importer.surfaces import grips_along
 from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST
 from laconic.robot.importer.wheels import FoundWheel
+from laconic.scene.axle_lines import WITHIN_RAD, common_line, grouped, meeting_point, misses_by
 
 SAME_RAD = np.radians(2.0)
-MEETS_M = 1e-3
-MEETS_RAD = np.radians(0.1)
+FLAT = 0.5  # of a direction's length in the ground's plane, at least, for one of rollers
+MECANUM = {45.0, -45.0}
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Kind:
 
 def kinds_of(where: str, wheels: Sequence[FoundWheel], answers: Answers) -> list[Kind]:
     """One for each wheel; BadInput asks where nothing tells."""
-    found = [_said(wheel, wheels, answers) or _seen(where, wheel) for wheel in wheels]
+    found = [_said(wheel, wheels, answers) or _seen(where, wheel) or _by_friction(wheel) for wheel in wheels]
     plain = [wheel for wheel, kind in zip(wheels, found, strict=True) if kind is None]
     doubt = hindered(plain) if len(plain) == len(wheels) else ""
     if doubt:
@@ -46,51 +49,40 @@ def kinds_of(where: str, wheels: Sequence[FoundWheel], answers: Answers) -> list
 
 def hindered(wheels: Sequence[FoundWheel]) -> str:
     """Why such wheels, were they plain, would not drive the robot, and what to say instead; empty where they would."""
-    if not roll_together(wheels):
-        return ("do not meet in one point, and the file shows no rollers; give --rollers omni, --rollers mecanum, "
-                "--rollers JOINT=DEGREES, or --rollers none with --friction for wheels that skid")
+    if miss := _miss(wheels):
+        return (f"do not meet in one point ({miss}), and the file shows no rollers; give --rollers omni, --rollers "
+                "mecanum, --rollers JOINT=DEGREES, or --rollers none with --friction for wheels that skid")
     if are_around_their_axles_point(wheels):
         return ("meet in one point between the wheels, so plain ones could turn the robot on the spot alone, and the "
                 "file shows no rollers; give --rollers omni, --rollers JOINT=DEGREES, or --rollers none")
     return ""
 
 
+def _miss(wheels: Sequence[FoundWheel]) -> str:
+    """Which axle keeps plain wheels from turning the robot without slip, and by how much; empty where all are one line
+    or meet in one point."""
+    lines = lines_of(wheels)
+    if common_line(lines):
+        return ""
+    point = meeting_point(lines)
+    if point is None:
+        (one, line), *others = ((group[0], line) for group, line in grouped(lines))
+        other, offset = max(((index, line.offset_of(each.point)) for index, each in others), key=lambda each: each[1])
+        return f"that of {wheels[other].name} lies {offset:.3g} m beside that of {wheels[one].name}, parallel to it"
+    if nearly_meet(lines, point):
+        return ""
+    worst, distance = misses_by(lines, point)
+    return f"that of {wheels[worst].name} passes the nearest such point at {distance:.3g} m"
+
+
 def are_around_their_axles_point(wheels: Sequence[FoundWheel]) -> bool:
     """Whether the axle lines meet in one point with wheels on all sides of it, as those of omni wheels do."""
-    if len(wheels) < 3 or (point := _meeting(wheels)) is None:
+    lines = lines_of(wheels)
+    if len(wheels) < 3 or common_line(lines) or (point := meeting_point(lines)) is None:
         return False
-    off = np.array([w.hub_m[:2] - point for w in wheels])
+    off = np.array([line.point - point for line in lines])
     angles = np.sort(np.arctan2(off[:, 1], off[:, 0]))
-    return bool(np.diff([*angles, angles[0] + 2.0 * np.pi]).max() < np.pi - MEETS_RAD)
-
-
-def roll_together(wheels: Sequence[FoundWheel]) -> bool:
-    """Whether plain wheels can turn the robot without slip: their axle lines are one, or meet in one point."""
-    normal, point = _lines(wheels)[0]
-    if _are_parallel(wheels):
-        return all(abs(normal @ (p - point)) < MEETS_M for _, p in _lines(wheels))
-    return _meeting(wheels) is not None
-
-
-def _lines(wheels: Sequence[FoundWheel]) -> list[tuple[Array, Array]]:
-    """The normal and a point of each axle's line, seen from above."""
-    return [(np.array([-w.axle[1], w.axle[0]]), w.hub_m[:2]) for w in wheels]
-
-
-def _are_parallel(wheels: Sequence[FoundWheel]) -> bool:
-    normal, _ = _lines(wheels)[0]
-    return all(abs(normal @ n) > np.cos(MEETS_RAD) for n, _ in _lines(wheels))
-
-
-def _meeting(wheels: Sequence[FoundWheel]) -> Array | None:
-    """The one point in which all axle lines meet; None where they do not, or are parallel."""
-    if _are_parallel(wheels):
-        return None
-    lines = _lines(wheels)
-    rows = np.array([n for n, _ in lines])
-    right = np.array([n @ p for n, p in lines])
-    meeting, *_ = np.linalg.lstsq(rows, right, rcond=None)
-    return meeting if np.abs(rows @ meeting - right).max() < MEETS_M else None
+    return bool(np.diff([*angles, angles[0] + 2.0 * np.pi]).max() < np.pi - WITHIN_RAD)
 
 
 def _said(wheel: FoundWheel, wheels: Sequence[FoundWheel], answers: Answers) -> Kind | None:
@@ -139,6 +131,22 @@ def _seen(where: str, wheel: FoundWheel) -> Kind | None:
         raise BadInput(f"{where}: rollers of {wheel.name} differ in angle by {np.degrees(spread):.0f}°; give --rollers "
                        f"{wheel.name}=DEGREES")
     return _kind_of(mean, f"by the {len(wheel.rollers)} rollers of the file")
+
+
+def _by_friction(wheel: FoundWheel) -> Kind | None:
+    """A surface that grips in one direction alone is that of rollers which lie in it."""
+    surface = wheel.surface
+    if surface is None or surface.direction is None or (is_along := grips_along(surface)) is None:
+        return None
+    flat = surface.direction[:2]
+    if np.linalg.norm(flat) < FLAT:
+        return None
+    roller = np.arctan2(flat[1], flat[0]) + (0.0 if is_along else np.pi / 2.0)
+    degrees = _within(float(np.degrees(roller - wheel.axle_rad)))
+    if abs(degrees) < np.degrees(SAME_RAD):
+        return None  # such a wheel would push nothing
+    degrees = next((each for each in MECANUM if abs(degrees - each) <= np.degrees(WITHIN_RAD)), degrees)
+    return _kind_of(np.radians(degrees), "by the direction without friction that the file gives (fdir1)")
 
 
 def _kind_of(roller_rad: float, why: str) -> Kind:

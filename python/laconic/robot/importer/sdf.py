@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,11 +16,13 @@ from laconic.robot.importer.checked import (
     inertia_matrix,
     mass,
     not_negative,
+    read_number,
     size,
     sizes,
     unit_vector,
 )
-from laconic.robot.importer.gravity import gravity_left_out
+from laconic.robot.importer.commands import commands_of, with_mimics
+from laconic.robot.importer.gravity import gravity_left_out, listed
 from laconic.robot.importer.meshes import MeshFiles
 from laconic.robot.importer.once import refuse_doubled
 from laconic.robot.importer.placement import (
@@ -39,49 +40,82 @@ from laconic.robot.importer.robot_tree import (
     HINGE,
     SLIDE,
     TURNS_ROUND_RAD,
+    Command,
     Joint,
     Link,
     Robot,
     Shape,
+    Surface,
     base_of,
+    check_count,
     mimics,
 )
-from laconic.robot.importer.xml_file import Element, xml_root
+from laconic.robot.importer.surfaces import surface_of
+from laconic.robot.importer.xml_file import Element, bytes_of, root_of
 
 KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
          "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}
 TEXTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}  # the format's own when not given
 USUAL_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.8)  # of the format, where a file gives none
+LIMITS = {"limit/effort": "effort limit {:g} N·m", "limit/velocity": "speed limit {:g} rad/s",
+          "dynamics/spring_stiffness": "spring of {:g} N·m/rad"}
+NO_LIMIT = 1e15  # what the format has for one that is not given is larger
 VERSIONS = [f"1.{minor}" for minor in range(13)]
 
 
 def read_sdf(path: Path, packages: Mapping[str, Path], model_name: str | None) -> Robot:
-    """The only model of the file, or the one of this name."""
-    root = xml_root(path, "is no XML")
-    model = _model(path, root, model_name)
+    """The only robot of the file, or the model of this name."""
+    text = bytes_of(path)
+    check_count(path, text.count(b"<link"))
+    root = root_of(path, text, "is no XML")
+    model, remarks = _model(path, root, model_name)
     with MeshFiles(path, packages) as files:
-        return _Model(path, model, files, gravity_of(path, root, model)).robot()
+        return _Model(path, model, files, gravity_of(path, root, model), remarks).robot()
 
 
-def _model(path: Path, root: Element, name: str | None) -> Element:
+def _model(path: Path, root: Element, name: str | None) -> tuple[Element, list[str]]:
+    """The model, and a remark on those that are no robots."""
     if root.tag != "sdf":
         raise BadInput(f"{path}: begins with <{root.tag}>; SDF begins with <sdf>")
     version = root.get("version", VERSIONS[-1])
     if version not in VERSIONS:
         raise BadInput(f"{path}: <sdf> version {version[:WORDS_AT_MOST]!r} is not known; known are {VERSIONS[0]} to "
                        f"{VERSIONS[-1]}")
-    models = [each for each in root.iter("model") if each.find("link") is not None]
-    if not models and (included := root.find(".//include")) is not None:
+    every = _outer_models(root)
+    models = [each for each in every if each.get("name") == name] if name is not None else _robots(every)
+    if not models and (included := root.find(".//include")) is not None and name is None:
         uri = _text(included, "uri") or "a file"
         raise BadInput(f"{path}: has no links but those of <include> {uri}, which is not read; give the file of that "
                        "model")
-    if name is not None:
-        models = [each for each in models if each.get("name") == name]
     if len(models) != 1:
-        names = ", ".join(str(each.get("name")) for each in models[:6])
+        names = ", ".join(str(each.get("name")) for each in (models or every)[:6])
         raise BadInput(f"{path}: has {len(models)} models with links{f' ({names})' if names else ''}; name one with "
                        "--model")
-    return models[0]
+    others = [str(each.get("name")) for each in every if each is not models[0]]
+    return models[0], [f"of the models in the file {models[0].get('name')} is the robot; left out are "
+                       f"{listed(others)}"] if others else []
+
+
+def _outer_models(root: Element) -> list[Element]:
+    """Those with links that are part of no other such model."""
+    found, waiting = [], [root]
+    while waiting:
+        for child in waiting.pop():
+            if child.tag == "model" and child.find("link") is not None:
+                found.append(child)
+            else:
+                waiting.append(child)
+    return found
+
+
+def _robots(models: Sequence[Element]) -> list[Element]:
+    """Those that are not static, as a ground plane is."""
+    return [each for each in models if (_text(each, "static") or "") not in ("1", "true")]
+
+
+def _moves(model: Element) -> bool:
+    """Whether it has a joint that is not fixed."""
+    return any(KINDS.get(joint.get("type", "")) != FIXED for joint in model.iter("joint"))
 
 
 def gravity_of(path: Path, root: Element, model: Element) -> list[float]:
@@ -96,21 +130,35 @@ def gravity_of(path: Path, root: Element, model: Element) -> list[float]:
 class _Model:
     """One <model>: its frames by name, in the frame of the model."""
 
-    def __init__(self, path: Path, model: Element, files: MeshFiles, gravity_m_per_s2: list[float]):
+    def __init__(self, path: Path, model: Element, files: MeshFiles, gravity_m_per_s2: list[float],
+                 remarks: list[str]):
         self.path, self.model, self.files, self.gravity_m_per_s2 = path, model, files, gravity_m_per_s2
-        for nested in ("include", "model"):
-            if model.find(nested) is not None:
-                raise BadInput(f"{path}: model {model.get('name')} has an <{nested}>, which is not read; put its "
-                               "links into it")
+        self.remarks = [*remarks, *self._nested()]
         for part in (*model.findall("link"), *model.findall("joint")):
             refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}
-        self.joints = {self._name(each): each for each in model.findall("joint")}
+        self.joints = {self._name(each): each for each in model.findall("joint") if not self._is_of_nested(each)}
         frames = {self._name(each): each for each in model.findall("frame")}
         self.frames = {**self.links, **frames, **self.joints}
         if len(self.frames) < len(self.links) + len(frames) + len(self.joints):
             raise BadInput(f"{path}: two links, joints or frames have one name; give each its own")
         self.placed: dict[str, Array] = {"__model__": IDENTITY}
+        self.back = IDENTITY  # from the frame of the model to that of the base, once it is known
+
+    def _nested(self) -> list[str]:
+        """A remark on models inside; BadInput for one with joints that move, whose wheels would be missed."""
+        remarks = []
+        for each in (*self.model.findall("include"), *self.model.findall("model")):
+            name = each.get("name") or _text(each, "name") or _text(each, "uri") or f"<{each.tag}>"
+            if _moves(each):
+                raise BadInput(f"{self.path}: model {self.model.get('name')} has a <{each.tag}> {name} with joints "
+                               "that move, which is not read; put its links into it")
+            remarks.append(f"<{each.tag}> {name} is not read; its mass is not counted")
+        return remarks
+
+    def _is_of_nested(self, joint: Element) -> bool:
+        """Whether it holds a link of a model inside, which is left out."""
+        return any("::" in (_text(joint, end) or "") for end in ("parent", "child"))
 
     def _name(self, element: Element) -> str:
         name = element.get("name")
@@ -149,14 +197,15 @@ class _Model:
         ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()}
         real = {name: end for name, end in ends.items() if end[0] != "world"}
         base = base_of(self.path, self.links, [child for _, child in real.values()])
-        back = inverse(self.frame(base))
+        back = self.back = inverse(self.frame(base))
         links = {name: self._link(name, back) for name in self.links}
-        joints = {name: self._joint(name, *real[name], back) for name in real}
-        title = self.model.get("name") or self.path.stem
         masters = {name: mimic.get("joint", "") for name in real
                    if (mimic := self.joints[name].find("axis/mimic")) is not None}
+        commands = with_mimics(commands_of(self.model, real), masters)
+        joints = {name: self._joint(name, *real[name], back, commands.get(name, ())) for name in real}
+        title = self.model.get("name") or self.path.stem
         weightless = [name for name, each in self.links.items() if (_text(each, "gravity") or "") in ("0", "false")]
-        remarks = (*self.files.remarks(), *mimics(self.path, masters, joints),
+        remarks = (*self.remarks, *self.files.remarks(), *mimics(self.path, masters, joints),
                    *gravity_left_out(self.gravity_m_per_s2, weightless))
         return Robot(title, self.path, "SDF", base, links, joints, remarks).check()
 
@@ -165,16 +214,20 @@ class _Model:
         frame = back @ self.frame(name)
         shapes = tuple(shape for tag in ("collision", "visual") for part in element.findall(tag)
                        if (shape := self._shape(f"{where}: geometry", part, frame, tag == "collision")))
-        inertial, unread = element.find("inertial"), self.files.unread(each.text for each in element.iter("uri"))
+        unread = self.files.unread(_uris(element, "visual", "collision"))
+        lacks_shape = bool(self.files.unread(_uris(element, "collision")))
+        inertial = element.find("inertial")
         if inertial is None:
-            return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread)
+            return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread,
+                        unread_collides=lacks_shape)
         placed = frame @ _placement(where, inertial.find("pose"))
         given = inertial.find("inertia")
         moments = {key: _text(given, key) or usual for key, usual in TEXTS.items()} if given is not None else TEXTS
-        tensor = inertia_matrix(where, SimpleNamespace(**moments))
+        tensor = inertia_matrix(where, moments)
         turn = placed[:3, :3]
         kg = mass(where, _text(inertial, "mass") or 1.0)
-        return Link(name, kg, point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread)
+        return Link(name, kg, point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread,
+                    unread_collides=lacks_shape)
 
     def _shape(self, where: str, part: Element, frame: Array, collides: bool) -> Shape | None:
         geometry = part.find("geometry")
@@ -182,21 +235,32 @@ class _Model:
         if solid is None:
             return None
         placed = frame @ _placement(where, part.find("pose"))
+        surface = self._surface(part, placed) if collides else None
         if solid.tag in ("cylinder", "capsule"):
             radius, length = (size(where, key, _text(solid, key)) for key in ("radius", "length"))
-            return Shape("cylinder", placed, (radius, length / 2.0), collides=collides)
+            return Shape("cylinder", placed, (radius, length / 2.0), collides=collides, surface=surface)
         if solid.tag == "sphere":
-            return Shape("sphere", placed, (size(where, "radius", _text(solid, "radius")),), collides=collides)
+            radius = size(where, "radius", _text(solid, "radius"))
+            return Shape("sphere", placed, (radius,), collides=collides, surface=surface)
         if solid.tag == "box":
             half = sizes(where, (_text(solid, "size") or "").split()) / 2.0
-            return Shape.box(placed, half, collides)
+            return Shape.box(placed, half, collides, surface)
         points = self.files.points(_text(solid, "uri") or "") if solid.tag == "mesh" else None
         if points is None:
             return None
         scale = np.array(finite(where, (_text(solid, "scale") or "1 1 1").split(), 3))
-        return Shape("mesh", placed, points=point_of(placed, points * scale), collides=collides)
+        return Shape("mesh", placed, points=point_of(placed, points * scale), collides=collides, surface=surface)
 
-    def _joint(self, name: str, parent: str, child: str, back: Array) -> Joint:
+    def _surface(self, collision: Element, placed: Array) -> Surface | None:
+        """`placed`: the collision's frame in that of the base, in whose axes <fdir1> is unless it says otherwise."""
+        def turned(frame: str | None) -> Array | None:
+            if frame is None:
+                return placed[:3, :3]
+            return (self.back @ self.frame(frame))[:3, :3] if frame in self.frames or frame in self.placed else None
+
+        return surface_of(collision.find("surface/friction/ode"), ("mu", "mu2"), turned)
+
+    def _joint(self, name: str, parent: str, child: str, back: Array, commands: Sequence[Command]) -> Joint:
         element, where = self.joints[name], f"{self.path}: joint {name}"
         kind = KINDS.get(element.get("type", ""))
         if kind is None:
@@ -209,8 +273,11 @@ class _Model:
             axis = self._turn_of_axis(given, xyz, frame, back) @ direction
         damping, friction = (not_negative(where, what, _text(given, f"dynamics/{what}") or 0.0, unit)
                              for what, unit in DISSIPATION.items())
-        limited = _is_limited(where, element, given)
-        return Joint(name, kind, parent, child, point_of(frame), axis, limited, damping, friction)
+        range_rad = _range(where, element, given)
+        left_out = [words.format(value) for key, words in LIMITS.items()
+                    if 0.0 < (value := read_number(_text(given, key)) or 0.0) < NO_LIMIT]
+        return Joint(name, kind, parent, child, point_of(frame), axis, range_rad < TURNS_ROUND_RAD, damping, friction,
+                     range_rad, commands=tuple(commands), left_out=tuple(left_out))
 
     def _turn_of_axis(self, given: Any, xyz: Any, frame: Array, back: Array) -> Array:
         """The axes that the axis is given in: the joint's, if the file does not say another."""
@@ -221,12 +288,18 @@ class _Model:
         return np.asarray(frame[:3, :3])
 
 
-def _is_limited(where: str, joint: Element, axis: Element | None) -> bool:
+def _range(where: str, joint: Element, axis: Element | None) -> float:
+    """Between the limits of a hinge."""
     if joint.get("type") != "revolute" or axis is None or axis.find("limit") is None:
-        return False
+        return np.inf
     lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2,
                           largest=np.inf)
-    return upper - lower < TURNS_ROUND_RAD
+    return upper - lower
+
+
+def _uris(link: Element, *tags: str) -> list[str | None]:
+    """The meshes of its shapes."""
+    return [each.text for tag in tags for part in link.findall(tag) for each in part.iter("uri")]
 
 
 def _bound(axis: Element, end: str, usual: float) -> Any:

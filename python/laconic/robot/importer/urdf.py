@@ -1,31 +1,31 @@
-"""URDF and xacro, read by the libraries `urdf_parser_py` and `xacro`."""
+"""URDF, and xacro once it is expanded: links, joints, and what ROS and Gazebo add to them.
+
+Only the parts that a scene needs are checked. Others, such as materials, sensors and plugins, cannot stop an import.
+"""
 
 from __future__ import annotations
 
-import contextlib
-import io
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.importer.checked import (
     DISSIPATION,
-    LARGEST,
+    WORDS_AT_MOST,
     finite,
     inertia_matrix,
     mass,
     not_negative,
     number,
+    read_number,
     size,
     sizes,
     unit_vector,
-    words_of,
 )
+from laconic.robot.importer.commands import commands_of, with_mimics
 from laconic.robot.importer.meshes import MeshFiles
 from laconic.robot.importer.once import refuse_doubled
 from laconic.robot.importer.placement import IDENTITY, Array, placement, point_of, rotation_of_rpy
@@ -35,161 +35,231 @@ from laconic.robot.importer.robot_tree import (
     HINGE,
     SLIDE,
     TURNS_ROUND_RAD,
+    Command,
     Joint,
     Link,
     Robot,
     Shape,
+    Surface,
     base_of,
+    check_count,
     mimics,
 )
-from laconic.robot.importer.xml_file import Element, root_of, xml_root
+from laconic.robot.importer.surfaces import surface_of
+from laconic.robot.importer.xml_file import Element, bytes_of, root_of
 
 KINDS = {"continuous": HINGE, "revolute": HINGE, "prismatic": SLIDE, "fixed": FIXED, "floating": BALL, "planar": SLIDE}
 NO_URDF = "is no URDF that can be read"
-NUMBERS = {"mass": ("value",), "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "sphere": ("radius",),
-           "cylinder": ("radius", "length"), "dynamics": ("damping", "friction"), "mimic": ("multiplier", "offset"),
-           "limit": ("lower", "upper", "effort", "velocity")}
-REQUIRED = {"mass": ("value",), "sphere": ("radius",), "cylinder": ("radius", "length")}
+LIMITS = {"effort": "effort limit {:g} N·m", "velocity": "speed limit {:g} rad/s"}  # of a hinge
+SURFACE = "collision/surface/friction/ode"
+Surfaces = Mapping[str, Callable[[Mapping[str, Array]], Surface | None]]
 
 
 def read_xacro(path: Path, arguments: Mapping[str, str], packages: Mapping[str, Path]) -> Robot:
     """A xacro file, expanded with `NAME:=VALUE` arguments."""
-    from laconic.robot.importer.xacro_expansion import expanded
+    from laconic.robot.importer.xacro_expansion import check_is_robot, expanded
 
-    root = root_of(path, expanded(path, arguments, packages), NO_URDF)
+    text = expanded(path, arguments, packages)
+    check_count(path, text.count("<link"))
+    root = root_of(path, text, NO_URDF)
+    check_is_robot(path, root)
     with MeshFiles(path, packages) as files:
         return _robot(path, root, files, "xacro")
 
 
 def read_urdf(path: Path, packages: Mapping[str, Path]) -> Robot:
     """A URDF file."""
-    root = xml_root(path, NO_URDF)
+    text = bytes_of(path)
+    check_count(path, text.count(b"<link"))
+    root = root_of(path, text, NO_URDF)
     with MeshFiles(path, packages) as files:
         return _robot(path, root, files, "URDF")
 
 
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """The libraries print of tags that they do not know; nothing of that concerns masses and wheels."""
-    with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
-        yield
-
-
 def _robot(path: Path, root: Element, files: MeshFiles, form: str) -> Robot:
-    from urdf_parser_py.urdf import URDF
-
-    _check_numbers(path, root)
-    with _quiet():
-        try:
-            found = URDF.from_xml_string(ElementTree.tostring(root))
-        except Exception as error:
-            raise BadInput(f"{path}: {NO_URDF}: {words_of(error)}") from None
-    if not found.links:
+    if root.tag != "robot":
+        raise BadInput(f"{path}: {NO_URDF}: it begins with <{root.tag}>; a URDF begins with <robot>")
+    parts = {what: _by_name(path, root, what) for what in ("link", "joint")}
+    links, joints = parts["link"], parts["joint"]
+    if not links:
         raise BadInput(f"{path}: has no <link>; a robot has one at least")
-    base = base_of(path, [link.name for link in found.links], [joint.child for joint in found.joints])
-    _names_once(path, "link", [link.name for link in found.links])
-    _names_once(path, "joint", [joint.name for joint in found.joints])
-    frames = _frames(path, found, base)
-    links = {link.name: _link(path, link, frames[link.name], files) for link in found.links if link.name in frames}
-    joints = {joint.name: _joint(path, joint, frames) for joint in found.joints if joint.child in frames}
-    loose = [link.name for link in found.links if link.name not in frames]
+    ends = {name: (_end(path, each, "parent"), _end(path, each, "child")) for name, each in joints.items()}
+    for name, end in ends.items():
+        for link in end:
+            if link not in links:
+                raise BadInput(f"{path}: joint {name}: there is no link {link}; name one that is there")
+    base = base_of(path, links, [child for _, child in ends.values()])
+    frames = _frames(path, joints, ends, base)
+    loose = [name for name in links if name not in frames]
     if loose:
         raise BadInput(f"{path}: link {loose[0]} is not joined to {base}; a robot is a tree")
-    masters = {joint.name: str(joint.mimic.joint) for joint in found.joints if joint.mimic is not None}
-    remarks = (*files.remarks(), *mimics(path, masters, joints))
-    return Robot(found.name or path.stem, path, form, base, links, joints, remarks).check()
+    surfaces = _surfaces(root)
+    read_links = {name: _link(path, name, each, frames, surfaces, files) for name, each in links.items()}
+    masters = {name: mimic.get("joint", "") for name, each in joints.items()
+               if (mimic := each.find("mimic")) is not None}
+    commands = with_mimics(commands_of(root, joints), masters)
+    read_joints = {name: _joint(path, name, each, ends[name], frames[ends[name][1]], commands.get(name, ()))
+                   for name, each in joints.items()}
+    remarks = (*files.remarks(), *mimics(path, masters, read_joints))
+    return Robot(root.get("name") or path.stem, path, form, base, read_links, read_joints, remarks).check()
 
 
-def _check_numbers(path: Path, root: Element) -> None:
-    """BadInput with the link or joint for a vector that has not three numbers, which the library would not place, and
-    for what only Python takes for a number, and for what stands twice."""
-    for part in root:
-        if part.tag in ("link", "joint"):
-            refuse_doubled(path, part)
-        for element in part.iter():
-            for key in NUMBERS.get(element.tag, ()) if part.tag in ("link", "joint") else ():
-                if key in element.attrib or key in REQUIRED.get(element.tag, ()):
-                    number(f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}", element.get(key))
-            for key in ("xyz", "rpy", "size"):
-                if key in element.attrib:
-                    where = f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}"
-                    largest = np.inf if element.tag == "axis" else LARGEST  # the length of an axis does not matter
-                    finite(where, element.attrib[key].split(), 3, largest)
-
-
-def _names_once(path: Path, what: str, names: list[str]) -> None:
-    for name, count in Counter(names).items():
+def _by_name(path: Path, root: Element, what: str) -> dict[str, Element]:
+    """The links or joints."""
+    parts = root.findall(what)
+    for part in parts:
+        if not part.get("name"):
+            raise BadInput(f"{path}: a <{what}> has no name; give one")
+        refuse_doubled(path, part)
+    for name, count in Counter(str(part.get("name")) for part in parts).items():
         if count > 1:
             raise BadInput(f"{path}: {what} {name} is there twice; give each a name of its own")
+    return {str(part.get("name")): part for part in parts}
 
 
-def _frames(path: Path, found: Any, base: str) -> dict[str, Array]:
+def _end(path: Path, joint: Element, which: str) -> str:
+    found = joint.find(which)
+    name = found.get("link") if found is not None else None
+    if not name:
+        raise BadInput(f'{path}: joint {joint.get("name")}: has no <{which} link="…"/>; name its {which} link')
+    return name
+
+
+def _frames(path: Path, joints: Mapping[str, Element], ends: Mapping[str, tuple[str, str]], base: str
+            ) -> dict[str, Array]:
     """The frame of each link in that of the base, all joints in their zero position."""
     frames = {base: IDENTITY}
-    below: dict[str, list[Any]] = {}
-    for joint in found.joints:
-        below.setdefault(joint.parent, []).append(joint)
+    below: dict[str, list[str]] = {}
+    for name, (parent, _) in ends.items():
+        below.setdefault(parent, []).append(name)
     waiting = [base]
     while waiting:
-        for joint in below.pop(waiting.pop(), []):
-            placed = _origin(f"{path}: joint {joint.name}", joint.origin)
-            frames[joint.child] = frames[joint.parent] @ placed
-            waiting.append(joint.child)
+        for name in below.pop(waiting.pop(), []):
+            parent, child = ends[name]
+            frames[child] = frames[parent] @ _origin(f"{path}: joint {name}", joints[name])
+            waiting.append(child)
     return frames
 
 
-def _origin(where: str, origin: Any) -> Array:
+def _origin(where: str, parent: Element) -> Array:
+    """Of the <origin> in an element."""
+    origin = parent.find("origin")
     if origin is None:
         return IDENTITY
-    xyz = finite(f"{where}: xyz", origin.xyz or [0.0] * 3, 3)
-    return placement(xyz, rotation_of_rpy(*finite(f"{where}: rpy", origin.rpy or [0.0] * 3, 3)))
+    xyz, rpy = (finite(f"{where}: <origin> {key}", origin.get(key, "0 0 0").split(), 3) for key in ("xyz", "rpy"))
+    return placement(xyz, rotation_of_rpy(*rpy))
 
 
-def _link(path: Path, link: Any, frame: Array, files: MeshFiles) -> Link:
-    where = f"{path}: link {link.name}"
-    shapes = tuple(shape for collides, parts in ((True, link.collisions), (False, link.visuals)) for part in parts
-                   if (shape := _shape(f"{where}: geometry", part, frame, files, collides)))
-    inertial, unread = link.inertial, files.unread(
-        getattr(part.geometry, "filename", None) for part in (*link.collisions, *link.visuals))
+def _link(path: Path, name: str, link: Element, frames: Mapping[str, Array], surfaces: Surfaces, files: MeshFiles
+          ) -> Link:
+    where, frame = f"{path}: link {name}", frames[name]
+    surface = surfaces[name](frames) if name in surfaces else None
+    unread: dict[bool, list[str]] = {True: [], False: []}
+    shapes = []
+    for collides, tag in ((True, "collision"), (False, "visual")):
+        for part in link.findall(tag):
+            shape = _shape(where, part, frame, files, collides, surface, unread[collides])
+            if shape:
+                shapes.append(shape)
+    missing = files.unread((*unread[True], *unread[False]))
+    inertial, lacks_shape = link.find("inertial"), bool(files.unread(unread[True]))
     if inertial is None:
-        return Link(link.name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread)
-    placed = frame @ _origin(f"{where}: <inertial>", inertial.origin)
-    tensor = inertia_matrix(where, inertial.inertia) if inertial.inertia is not None else np.zeros((3, 3))
+        return Link(name, com_m=point_of(frame), shapes=tuple(shapes), has_inertia=False, unread=missing,
+                    unread_collides=lacks_shape)
+    placed = frame @ _origin(f"{where}: <inertial>", inertial)
+    given, mass_given = inertial.find("inertia"), inertial.find("mass")
+    tensor = np.zeros((3, 3)) if given is None else inertia_matrix(where, given.attrib)
     turn = placed[:3, :3]
-    return Link(link.name, mass(where, inertial.mass), point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread)
+    kg = number(f"{where}: <mass> value", None if mass_given is None else mass_given.get("value"))
+    return Link(name, mass(where, kg), point_of(placed), turn @ tensor @ turn.T,
+                tuple(shapes), unread=missing, unread_collides=lacks_shape)
 
 
-def _shape(where: str, part: Any, frame: Array, files: MeshFiles, collides: bool) -> Shape | None:
-    geometry, kind = part.geometry, type(part.geometry).__name__
-    placed = frame @ _origin(where, part.origin)
-    if kind == "Cylinder":
-        radius, length = size(where, "radius", geometry.radius), size(where, "length", geometry.length)
-        return Shape("cylinder", placed, (radius, length / 2.0), collides=collides)
-    if kind == "Sphere":
-        return Shape("sphere", placed, (size(where, "radius", geometry.radius),), collides=collides)
-    if kind == "Box":
-        half = sizes(where, geometry.size) / 2.0
-        return Shape.box(placed, half, collides)
-    if kind == "Mesh":
-        points = files.points(geometry.filename)
-        if points is None:
-            return None
-        scale = np.array(finite(where, geometry.scale or [1.0] * 3, 3))
-        return Shape("mesh", placed, points=point_of(placed, points * scale), collides=collides)
-    return None
+def _shape(where: str, part: Element, frame: Array, files: MeshFiles, collides: bool, surface: Surface | None,
+           unread: list[str]) -> Shape | None:
+    """None for a shape that cannot be had; the name of a mesh is added to `unread`."""
+    geometry = part.find("geometry")
+    solid = next(iter(geometry), None) if geometry is not None else None
+    if solid is None:
+        return None
+    placed, where = frame @ _origin(f"{where}: <{part.tag}>", part), f"{where}: geometry"
+    if solid.tag in ("cylinder", "capsule"):
+        radius, length = (size(where, key, _attribute(where, solid, key)) for key in ("radius", "length"))
+        return Shape("cylinder", placed, (radius, length / 2.0), collides=collides, surface=surface)
+    if solid.tag == "sphere":
+        radius = size(where, "radius", _attribute(where, solid, "radius"))
+        return Shape("sphere", placed, (radius,), collides=collides, surface=surface)
+    if solid.tag == "box":
+        half = sizes(where, _vector(where, solid, "size")) / 2.0
+        return Shape.box(placed, half, collides, surface)
+    if solid.tag != "mesh":
+        files.missing.setdefault(f"<{solid.tag}>", "is no shape that is known")
+        unread.append(f"<{solid.tag}>")
+        return None
+    name = solid.get("filename") or ""
+    points = files.points(name)
+    if points is None:
+        unread.append(name)
+        return None
+    scale = np.array(finite(f"{where}: scale", solid.get("scale", "1 1 1").split(), 3))
+    return Shape("mesh", placed, points=point_of(placed, points * scale), collides=collides, surface=surface)
 
 
-def _joint(path: Path, joint: Any, frames: dict[str, Array]) -> Joint:
-    where = f"{path}: joint {joint.name}"
-    if joint.type not in KINDS:
-        raise BadInput(f"{where}: type {joint.type} is not known; known are {', '.join(KINDS)}")
-    frame = frames[joint.child]
-    axis = [1.0, 0.0, 0.0] if joint.axis is None else joint.axis
-    kind = KINDS[joint.type]
-    turned = frame[:3, :3] @ unit_vector(where, axis) if kind in (HINGE, SLIDE) else np.zeros(3)
-    limit = joint.limit
-    is_limited = joint.type == "revolute" and not (limit and limit.upper - limit.lower >= TURNS_ROUND_RAD)
-    given = joint.dynamics
-    damping, friction = (not_negative(where, what, (getattr(given, what) if given else None) or 0.0, unit)
+def _vector(where: str, solid: Element, key: str) -> list[float]:
+    return finite(f"{where.removesuffix(': geometry')}: <{solid.tag}> {key}", solid.get(key, "").split(), 3)
+
+
+def _attribute(where: str, solid: Element, key: str) -> float:
+    return number(f"{where.removesuffix(': geometry')}: <{solid.tag}> {key}", solid.get(key))
+
+
+def _joint(path: Path, name: str, joint: Element, ends: tuple[str, str], frame: Array,
+           commands: Sequence[Command]) -> Joint:
+    where, kind = f"{path}: joint {name}", joint.get("type", "")
+    if kind not in KINDS:
+        raise BadInput(f"{where}: type {kind[:WORDS_AT_MOST] or '(none)'} is not known; known are {', '.join(KINDS)}")
+    axis, limit, dynamics = joint.find("axis"), joint.find("limit"), joint.find("dynamics")
+    turned = np.zeros(3)
+    if KINDS[kind] in (HINGE, SLIDE):  # of others an axis is of no use
+        turned = frame[:3, :3] @ unit_vector(where, _axis(where, axis))
+    lower, upper = (0.0 if limit is None else finite(f"{where}: <limit> {end}", [limit.get(end, 0.0)], 1, np.inf)[0]
+                    for end in ("lower", "upper")) if kind == "revolute" else (0.0, 0.0)
+    is_limited = kind == "revolute" and upper - lower < TURNS_ROUND_RAD
+    damping, friction = (not_negative(where, what, 0.0 if dynamics is None else dynamics.get(what, 0.0), unit)
                          for what, unit in DISSIPATION.items())
-    return Joint(joint.name, kind, joint.parent, joint.child, point_of(frame), turned, is_limited, damping, friction)
+    left_out = [words.format(value) for key, words in LIMITS.items()
+                if limit is not None and (value := read_number(limit.get(key)) or 0.0) > 0.0]
+    return Joint(name, KINDS[kind], *ends, point_of(frame), turned, is_limited, damping, friction,
+                 upper - lower if is_limited and limit is not None else np.inf, commands=tuple(commands),
+                 left_out=tuple(left_out))
+
+
+def _axis(where: str, axis: Element | None) -> list[float]:
+    if axis is None:
+        return [1.0, 0.0, 0.0]
+    if axis.get("xyz") is None:
+        raise BadInput(f'{where}: <axis> has no xyz; give one such as xyz="0 1 0"')
+    return finite(f"{where}: <axis> xyz", str(axis.get("xyz")).split(), 3, np.inf)  # its length does not matter
+
+
+def _surfaces(root: Element) -> dict[str, Callable[[Mapping[str, Array]], Surface | None]]:
+    """The friction that <gazebo> gives to a link, once the frames of links are known."""
+    found: dict[str, Callable[[Mapping[str, Array]], Surface | None]] = {}
+    for each in root.findall("gazebo"):
+        link = each.get("reference", "")
+        for parent, names in ((each, ("mu1", "mu2")), (each.find(SURFACE), ("mu", "mu2"))):
+            if surface_of(parent, names, lambda _: None) is not None:
+                found[link] = _in_frame(parent, names, link)
+    return found
+
+
+def _in_frame(parent: Element | None, names: tuple[str, str], link: str
+              ) -> Callable[[Mapping[str, Array]], Surface | None]:
+    def surface(frames: Mapping[str, Array]) -> Surface | None:
+        def turned(frame: str | None) -> Array | None:
+            found = frames.get(frame or link)
+            return None if found is None else found[:3, :3]
+
+        return surface_of(parent, names, turned)
+
+    return surface

@@ -11,13 +11,16 @@ from laconic.errors import BadInput, nearest_of
 from laconic.robot.importer.answers import Answers, answer
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.rigid_body import inertia_about_axis
-from laconic.robot.importer.robot_tree import HINGE, SLIDE, Joint, Link, Robot
+from laconic.robot.importer.robot_tree import HINGE, SLIDE, Joint, Link, Robot, Shape, Surface
+from laconic.robot.importer.steering import Swivel, is_upright, swivel_of, turntables
+from laconic.robot.importer.surfaces import is_frictionless
 from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
+from laconic.robot.importer.wheel_shape import Reach, chosen_shapes, reach_of
 
 OF_PACKAGES = ("package://", "model://")
 MOST_NAMED = 3  # meshes in a message
 LEVEL = np.sin(np.radians(10.0))  # the steepest axle of a wheel
-UPRIGHT = np.cos(np.radians(10.0))  # of a swivel's axis
+CAMBER = np.sin(np.radians(0.2))  # what is less is rounding
 PLACE_DIGITS = 4  # wheels nearer than a tenth of a millimetre are in one place
 REACHES = 0.05  # of the radius above the ground, at most
 
@@ -40,8 +43,16 @@ class FoundWheel:
     radius_m: float
     inertia_kgm2: float
     rollers: tuple[Roller, ...] = ()
-    swivel: Joint | None = None
+    swivel: Swivel | None = None
     remarks: tuple[str, ...] = ()
+    half_width_m: float = 0.0
+    mass_kg: float = 0.0  # of what turns about the axle
+    surface: Surface | None = None  # of its shape
+
+    @property
+    def is_steered(self) -> bool:
+        """Whether a joint turns it about an upright axis by a command."""
+        return self.swivel is not None and self.swivel.is_steered
 
     @property
     def name(self) -> str:
@@ -57,7 +68,9 @@ class FoundWheel:
 
 @dataclass(frozen=True)
 class Ground:
-    """What stands on it, its height in the frame of the base, and why joints that look like wheels are none."""
+    """What stands on it, its height in the frame of the base, and why joints that look like wheels are none.
+
+    `casters` swivel, are steered, or slide since they have no friction."""
 
     wheels: tuple[FoundWheel, ...]
     casters: tuple[FoundWheel, ...]
@@ -70,41 +83,83 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     named = [_named(robot, name) for name in answers.wheels]
     _check_named(robot, named)
     candidates = named or [joint for joint in robot.joints.values() if _turns_as_wheel(robot, joint)]
-    measured = [(joint, _radius(robot, joint, answers)) for joint in candidates]
-    if not any(radius for _, radius in measured):
-        raise BadInput(f"{robot.path}: {_no_wheel(robot, candidates)}")
-    height = min(float(joint.point_m[2]) - radius for joint, radius in measured if radius)
-    reaching, remarks = [], []
-    for joint, radius in measured:
-        if radius is None:
-            if "wheel" in joint.name.lower() or _beside_a_wheel(joint, measured):
-                has_shapes = _has_shapes(robot, joint)
-                why = "its shapes have the radius 0" if has_shapes else "no shape tells the wheel's radius"
-                why += _unread(robot, [joint])
-                raise BadInput(f"{robot.path}: joint {joint.name}: {why}; give --radius {joint.name}=METRES, or "
-                               "--wheel JOINT for each joint that is a wheel")
-            remarks.append(f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
-                           f"--radius {joint.name}=METRES would say otherwise")
-            continue
-        above = float(joint.point_m[2]) - radius - height
-        if above <= REACHES * radius or named:
-            reaching.append(_wheel(robot, joint, radius, answers, named))
+    measured, remarks = _measured(robot, candidates, answers, bool(named))
+    if not any(reach for _, reach in measured):
+        raise BadInput(f"{robot.path}: {_no_wheel(robot, [joint for joint, _ in measured])}")
+    _check_known(robot, measured)
+    known = [(joint, reach) for joint, reach in measured if reach]
+    height = min(float(joint.point_m[2]) - reach.radius_m for joint, reach in known)
+    remarks += [f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
+                f"--radius {joint.name}=METRES would say otherwise" for joint, reach in measured if reach is None]
+    reaching = []
+    for joint, reach in known:
+        above = float(joint.point_m[2]) - reach.radius_m - height
+        if above <= REACHES * reach.radius_m or named:
+            reaching.append((joint, reach))
         else:
             remarks.append(f"joint {joint.name} turns on a level axle, {1e3 * above:.0f} mm above the ground, and is "
                            "no wheel; "
                            f"--wheel JOINT for each wheel would say otherwise")
-    wheels = tuple(wheel for wheel in reaching if wheel.swivel is None or named)
-    casters = tuple(wheel for wheel in reaching if wheel.swivel is not None and not named)
+    tables = turntables(robot, [(joint, reach.radius_m) for joint, reach in reaching])
+    found = [_wheel(robot, joint, reach, answers, named, tables) for joint, reach in reaching]
+    wheels, casters = _apart(found, answers, bool(named))
     if not wheels:
-        raise BadInput(f"{robot.path}: all wheels swivel ({', '.join(each.name for each in casters)}), and steering "
-                       "is not "
-                       "modelled; give --wheel JOINT for those that are held")
+        raise BadInput(f"{robot.path}: {_all_swivel(casters)}")
     _check_places(robot, wheels)
+    remarks += [f"joint {table.name} carries all wheels; it is held in its zero position" for table in tables]
     remarks += [remark for wheel in wheels for remark in wheel.remarks]
     remarks += [f"joint {joint.name} turns round on an axle {_degrees(np.arcsin(min(abs(joint.axis[2]), 1.0)))} from "
                 "level, and is no wheel; a wheel's axle is level" for joint in robot.joints.values()
                 if _is_tilted(joint)]
-    return Ground(wheels, casters, height, tuple(remarks))
+    return Ground(tuple(wheels), tuple(casters), height, tuple(remarks))
+
+
+def _measured(robot: Robot, candidates: Sequence[Joint], answers: Answers, are_named: bool
+              ) -> tuple[list[tuple[Joint, Reach | None]], list[str]]:
+    """Each with its radius, but those that swing as an arm does, which the remarks name."""
+    measured = [(joint, _reach_of(robot, joint, answers)) for joint in candidates]
+    swinging = [] if are_named else [joint for joint, reach in measured if reach and reach.swings]
+    if len(swinging) == len(measured):
+        swinging = []  # there is nothing else
+    remarks = [f"joint {joint.name} turns on a level axle, and its shapes lie off it, so it is no wheel; --wheel JOINT "
+               "for each wheel would say otherwise" for joint in swinging]
+    return [(joint, reach) for joint, reach in measured if joint not in swinging], remarks
+
+
+def _check_known(robot: Robot, measured: Sequence[tuple[Joint, Reach | None]]) -> None:
+    """BadInput for joints without a radius that by their name or their height are wheels."""
+    lost = [joint for joint, reach in measured if reach is None and _may_be_wheel(robot, joint, measured)]
+    if not lost:
+        return
+    has_shapes = _has_shapes(robot, lost[0]) and not _unread(robot, lost)
+    why = "its shapes have the radius 0" if has_shapes else "no shape tells the wheel's radius"
+    why += _unread(robot, lost)
+    names = ", ".join(joint.name for joint in lost[:6])
+    radius = f"--radius {lost[0].name}=METRES" if len(lost) == 1 else "--radius METRES"
+    raise BadInput(f"{robot.path}: joint{'s' if lost[1:] else ''} {names}: {why}; give {radius}, or "
+                   f"--wheel JOINT for each joint that is a wheel{_folder_of_meshes(robot, lost)}")
+
+
+def _apart(found: Sequence[FoundWheel], answers: Answers, are_named: bool
+           ) -> tuple[list[FoundWheel], list[FoundWheel]]:
+    """The wheels, and those that only carry a load."""
+    if are_named:
+        return [*found], []
+    wheels: list[FoundWheel] = []
+    casters: list[FoundWheel] = []
+    for wheel in found:
+        slides = (wheel.surface is not None and is_frictionless(wheel.surface)
+                  and answer(answers.rollers, wheel.name) is None)
+        (casters if wheel.swivel or slides else wheels).append(wheel)
+    return (wheels, casters) if wheels or any(each.swivel for each in casters) else (casters, [])
+
+
+def _all_swivel(casters: Sequence[FoundWheel]) -> str:
+    """Why no wheel is left, and what to do."""
+    why = ", ".join(f"{each.name} {'is steered' if each.is_steered else 'swivels freely'} by {each.swivel.name} "
+                    f"({each.swivel.why})" for each in casters[:6] if each.swivel)
+    return (f"all wheels swivel ({', '.join(each.name for each in casters)}): {why}; steering is not modelled; give "
+            "--wheel JOINT for those that are held")
 
 
 def _check_places(robot: Robot, wheels: Sequence[FoundWheel]) -> None:
@@ -119,9 +174,17 @@ def _check_places(robot: Robot, wheels: Sequence[FoundWheel]) -> None:
         there[place] = wheel.name
 
 
-def _beside_a_wheel(joint: Joint, measured: Sequence[tuple[Joint, float | None]]) -> bool:
-    """As high as an axle whose radius is known: a wheel whose mesh is not there."""
-    return any(radius and abs(joint.point_m[2] - other.point_m[2]) < 0.1 * radius for other, radius in measured)
+WHEELS = ("wheel", "tire", "tyre", "drive")  # in names
+
+
+def _may_be_wheel(robot: Robot, joint: Joint, measured: Sequence[tuple[Joint, Reach | None]]) -> bool:
+    """By its name, or as high as an axle whose radius is known, or lower: a wheel whose mesh is not there."""
+    links = robot.below(joint, rigid=True)
+    if any(word in each.lower() for word in WHEELS for each in (joint.name, *(link.name for link in links))):
+        return True
+    is_unread = any(link.unread for link in links)
+    return any(reach and (abs(joint.point_m[2] - other.point_m[2]) < 0.1 * reach.radius_m
+                          or (is_unread and joint.point_m[2] < other.point_m[2])) for other, reach in measured)
 
 
 def _named(robot: Robot, name: str) -> Joint:
@@ -154,16 +217,18 @@ def _turns_as_wheel(robot: Robot, joint: Joint) -> bool:
 
 def _is_tilted(joint: Joint) -> bool:
     """A free hinge that is neither a wheel's nor, as a swivel's, upright."""
-    return joint.kind == HINGE and not joint.is_limited and LEVEL < abs(joint.axis[2]) < UPRIGHT
+    return (joint.kind == HINGE and not joint.is_limited and abs(joint.axis[2]) > LEVEL
+            and not is_upright(joint))
 
 
 def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
     if candidates:
         names = ", ".join(joint.name for joint in candidates[:6])
-        are_there = any(_has_shapes(robot, joint) for joint in candidates)
+        are_there = any(_has_shapes(robot, joint) for joint in candidates) and not _unread(robot, candidates)
         why = f"the shapes of {names} have the radius 0" if are_there else f"no shape tells the radius of {names}"
         why += _unread(robot, candidates[:6])
-        return f"{why}; give --radius METRES, and --wheel JOINT for each wheel"
+        folder = _folder_of_meshes(robot, candidates[:6])
+        return f"{why}; give --radius METRES, and --wheel JOINT for each wheel{folder}"
     limited = [joint.name for joint in robot.joints.values() if joint.kind == HINGE and joint.is_limited
                and abs(joint.axis[2]) <= LEVEL]
     seen = f" ({', '.join(limited[:6])}: within limits)" if limited else ""
@@ -180,66 +245,78 @@ def _unread(robot: Robot, joints: Sequence[Joint]) -> str:
     return f", as their meshes were not read: {', '.join([*meshes][:MOST_NAMED])}{where}"
 
 
+def _folder_of_meshes(robot: Robot, joints: Sequence[Joint]) -> str:
+    """How to say where meshes are, unless the message says it for a package."""
+    unread = _unread(robot, joints)
+    return "" if not unread or "--package" in unread else "; --package NAME=FOLDER is a folder that has the meshes"
+
+
 def _has_shapes(robot: Robot, joint: Joint) -> bool:
     return any(link.shapes for link in robot.below(joint, rigid=True))
 
 
-def _radius(robot: Robot, joint: Joint, answers: Answers) -> float | None:
+def _reach_of(robot: Robot, joint: Joint, answers: Answers) -> Reach | None:
     """Said by the user, else the reach of its rollers, else of its own shapes."""
     if (said := answer(answers.radius_m, joint.name)) is not None:
-        return said
+        return Reach(said)
     inner = rollers_of(robot, joint)
     reach = [_reach(robot, joint, roller) for roller in inner]
     told = [each for each in reach if each] if len(inner) >= ROLLERS_AT_LEAST else []
-    return max(told) if told else _own_radius(robot, joint)
+    return Reach(max(told)) if told else reach_of(robot, joint)
 
 
 def _reach(robot: Robot, wheel: Joint, roller: Joint) -> float | None:
     """How far the middle of a roller reaches when it points to the ground."""
-    own = _own_radius(robot, roller)
+    own = reach_of(robot, roller)
     off = roller.point_m - wheel.point_m
-    return None if own is None else float(np.linalg.norm(off - wheel.axis * (off @ wheel.axis))) + own
+    return None if own is None else float(np.linalg.norm(off - wheel.axis * (off @ wheel.axis))) + own.radius_m
 
 
-def _own_radius(robot: Robot, joint: Joint) -> float | None:
-    """Of the shapes that collide, else of those that are seen."""
-    shapes = [shape for link in robot.below(joint, rigid=True) for shape in link.shapes]
-    chosen = [s for s in shapes if s.collides] or shapes
-    radius = max((shape.radius_about(joint.point_m, joint.axis) for shape in chosen), default=0.0)
-    return radius if radius > 1e-6 else None
-
-
-def _wheel(robot: Robot, joint: Joint, radius: float, answers: Answers, named: Collection[Joint]) -> FoundWheel:
+def _wheel(robot: Robot, joint: Joint, reach: Reach, answers: Answers, named: Collection[Joint],
+           tables: Collection[Joint]) -> FoundWheel:
     parts = parts_of(robot, joint, named)
     rollers = tuple(Roller(j.point_m, j.axis) for j in parts.rollers)
     axle = joint.axis - np.array([0.0, 0.0, joint.axis[2]])
     axle = axle / np.linalg.norm(axle)
     remarks = [f"axle of {joint.name} is {_degrees(np.arcsin(abs(joint.axis[2])))} from level; taken as level"
-               ] if abs(joint.axis[2]) > np.sin(np.radians(0.5)) else []
-    swivel = None
+               ] if abs(joint.axis[2]) > CAMBER else []
+    if reach.is_off:
+        remarks.append(f"the shapes of wheel {joint.name} lie {1e3 * reach.off_m:.3g} mm off its axle; its radius is "
+                       f"taken as theirs, {reach.radius_m:.4g} m, and its place as that of the axle; mend the "
+                       f"<origin>, or give --radius {joint.name}=METRES")
+    hub, half_width = _hub(parts.shaped, joint, axle)
+    swivel = swivel_of(robot, joint, hub, axle, reach.radius_m, tables)
     for above in robot.chain(joint):
-        if above.kind == HINGE and abs(above.axis[2]) >= UPRIGHT:
-            swivel = above
-        elif above.kind in (HINGE, SLIDE) and above not in named:
-            remarks.append(f"joint {above.name} above {joint.name} is held in its zero position")
+        if above in named or above in tables or (swivel and above is swivel.joint) or above.kind not in (HINGE, SLIDE):
+            continue
+        remarks.append(f"joint {above.name} above {joint.name} is held in its zero position")
     if swivel is not None:
-        remarks.append(f"{joint.name} is steered by {swivel.name}, which is held in its zero position")
+        what = "is steered by" if swivel.is_steered else "swivels freely about"
+        remarks.append(f"{joint.name} {what} {swivel.name} ({swivel.why}), which is held in its zero position")
     remarks += parts.remarks
     said = answer(answers.inertia_kgm2, joint.name)
-    inertia = inertia_about_axis(parts.turning, joint.point_m, axle) if said is None else said
-    hub = _hub(parts.shaped, joint, axle)
-    return FoundWheel(joint, hub, axle, radius, inertia, rollers, swivel, tuple(remarks))
+    inertia = inertia_about_axis(parts.turning, joint.point_m, axle) + joint.armature_kgm2 if said is None else said
+    surface = next((each.surface for each in chosen_shapes(parts.shaped) if each.surface), None)
+    return FoundWheel(joint, hub, axle, reach.radius_m, inertia, rollers, swivel, tuple(remarks), half_width,
+                      sum(link.mass_kg for link in parts.turning), surface)
 
 
-def _hub(parts: Sequence[Link], joint: Joint, axle: Array) -> Array:
-    """The middle of the wheel on its axle: of its shapes, because a joint may lie at the end of the axle."""
-    shapes = [shape for link in parts for shape in link.shapes]
-    chosen = [s for s in shapes if s.collides] or shapes
+def _hub(parts: Sequence[Link], joint: Joint, axle: Array) -> tuple[Array, float]:
+    """The middle of the wheel on its axle, since a joint may lie at the end of the axle; and half its width."""
+    chosen = chosen_shapes(parts)
     if not chosen:
-        return joint.point_m
-    outline = np.vstack([s.outline() for s in chosen])
-    along = (outline - joint.point_m) @ axle
-    return np.asarray(joint.point_m + axle * (along.min() + along.max()) / 2.0)
+        return joint.point_m, 0.0
+    along = np.concatenate([_along(each, joint.point_m, axle) for each in chosen])
+    half = float(np.ptp(along)) / 2.0
+    return np.asarray(joint.point_m + axle * (along.min() + along.max()) / 2.0), half
+
+
+def _along(shape: Shape, point: Array, axle: Array) -> Array:
+    """How far the ends of a shape lie along the axle."""
+    if shape.kind == "sphere":
+        middle = float((shape.placed[:3, 3] - point) @ axle)
+        return np.array([middle - shape.size[0], middle + shape.size[0]])
+    return np.asarray((shape.outline() - point) @ axle)
 
 
 def _degrees(angle_rad: float) -> str:

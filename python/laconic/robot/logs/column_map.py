@@ -7,7 +7,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 from laconic.map_toml import read_map_toml
 from laconic.robot.logs.log import PER_WHEEL, POINTS
 from laconic.robot.logs.units import ANGLE, OF_QUANTITY, TICK
@@ -113,7 +113,7 @@ def read_map(path: Path) -> ColumnMap:
     if len(separator) != 1 or separator == '"':
         table.fail("separator", f"is {separator!r}; give one character, which is not a quotation mark")
     if separator == decimal:
-        table.fail("decimal", f"is {decimal!r}, which separates the columns, too; give the log's own separator")
+        table.fail("decimal", f"is {shown(decimal)}, which separates the columns, too; give the log's own separator")
     if not 0 <= names_line <= header_lines:
         raise BadInput(f"{path}: names_line: is {names_line}; give a line from 1 to header_lines")
     if len(quantities) == 1:
@@ -205,7 +205,7 @@ def _column(table: Table, key: str) -> Column:
 def _checked(table: Table, key: str, value: Any) -> Column:
     if isinstance(value, bool) or not isinstance(value, (str, int)) or value == "" \
             or (isinstance(value, int) and value < 1):
-        table.fail(key, f"holds {value!r}; give columns by name, or by number from 1")
+        table.fail(key, f"holds {shown(value)}; give columns by name, or by number from 1")
     return value
 
 
@@ -254,8 +254,8 @@ def _columns(table: Table, name: str, count: int | None) -> tuple[tuple[Column, 
     values = table.value("columns", ..., (list, str), "a list of columns, by name or by number")
     if isinstance(values, str):
         if NUMBERED not in values or name == "pose":
-            table.fail("columns", f"is {values!r}; give a list of columns, or one name with {NUMBERED} for the wheel's "
-                       "number")
+            table.fail("columns", f"is {shown(values)}; give a list of columns, or one name with {NUMBERED} for the "
+                       "wheel's number")
         return (values,), 0
     columns = tuple(_checked(table, "columns", value) for value in values)
     if name == "pose":
@@ -265,7 +265,7 @@ def _columns(table: Table, name: str, count: int | None) -> tuple[tuple[Column, 
         table.fail("columns", f"has {len(columns)} entries; give {count or 'one for each wheel'}")
     for number, column in enumerate(columns):
         if column in columns[:number]:
-            table.fail("columns", f"names {column!r} twice; give each column once")
+            table.fail("columns", f"names {shown(column)} twice; give each column once")
     return columns, 0
 
 
@@ -311,7 +311,7 @@ def _units(table: Table, name: str, length: int) -> tuple[str, ...]:
         table.fail(key, f"has {len(given)} entries; give {length}")
     for unit, known in zip(given, allowed, strict=True):
         if unit not in known:
-            table.fail(key, f"there is no unit {unit!r} of {name}; {nearest_of(unit, known)}")
+            table.fail(key, f"there is no unit {shown(unit)} of {name}; {nearest_of(unit, known)}")
     return tuple(given)
 
 
@@ -319,15 +319,16 @@ def _check_columns(table: Table, found: ColumnMap) -> None:
     for quantity in found.quantities.values():
         for figure in (quantity.ticks_per_turn, quantity.gear_ratio):
             if isinstance(figure, str) and not found.metadata:
-                table.fail(f"{quantity.name}", f"takes {figure!r} from a metadata file; name it in [metadata] file")
+                table.fail(f"{quantity.name}",
+                           f"takes {shown(figure)} from a metadata file; name it in [metadata] file")
         named = [column for column in quantity.columns if isinstance(column, str)]
         if named and found.format == "text" and not found.names_line:
-            table.fail(f"{quantity.name}.columns", f"names {named[0]!r}, but the log has no line of names; give the "
-                       "columns by number, or names_line")
+            table.fail(f"{quantity.name}.columns", f"names {shown(named[0])}, but the log has no line of names; give "
+                       "the columns by number, or names_line")
         if found.format == "can":
             for column in quantity.columns:
                 if not isinstance(column, str) or column.count(".") != 1:
-                    table.fail(f"{quantity.name}.columns", f"holds {column!r}; give MESSAGE.signal of the DBC")
+                    table.fail(f"{quantity.name}.columns", f"holds {shown(column)}; give MESSAGE.signal of the DBC")
 
 
 def fits(found: ColumnMap, path: Path, names: list[str]) -> bool:

@@ -141,10 +141,10 @@ def _lines(table: TextTable, rows: np.ndarray) -> str:
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
     words = [str(table.lines[run[0]]) if len(run) == 1 else f"{table.lines[run[0]]} to {table.lines[run[-1]]}"
              for run in runs]
-    shown = words if len(words) < 4 else [*words[:2], f"{len(words) - 2} other stretches"]
+    parts = words if len(words) < 4 else [*words[:2], f"{len(words) - 2} other stretches"]
     if len(rows) == 1:
         return f"line {words[0]} is"
-    return f"lines {' and '.join([', '.join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)} are"
+    return f"lines {' and '.join([', '.join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)} are"
 
 
 def _check_even(table: TextTable) -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 from laconic.robot.logs.column_map import Column, ColumnMap
 from laconic.text_file import TextOfFile, text_of_file
 
@@ -57,8 +57,8 @@ class TextTable:
                            "instead of the name")
         if column not in self.names:
             near = nearest_of(column, self.names, f"it has {_listed(self.names)}")
-            raise BadInput(f"{self.path}: has no column {column!r} (for {quantity}); correct the column map with --map "
-                           f"({near})")
+            raise BadInput(f"{self.path}: has no column {shown(column)} (for {quantity}); correct the column map with "
+                           f"--map ({near})")
         return self.names.index(column)
 
     def label(self, index: int) -> str:
@@ -104,7 +104,7 @@ class TextTable:
             try:
                 number_of(texts[index], self.decimal)
             except ValueError:
-                return f"{texts[index][:LONGEST_SHOWN]!r}{self._other_decimal(texts[index])}"
+                return f"{shown(texts[index][:LONGEST_SHOWN])}{self._other_decimal(texts[index])}"
         return "overflow"
 
     def _other_decimal(self, text: str) -> str:
@@ -194,5 +194,5 @@ def metadata_number(path: Path, rows: dict[str, list[list[str]]], name: str) -> 
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise BadInput(f"{path}: {name}: is {text[:LONGEST_SHOWN]!r}; give a number above zero")
+        raise BadInput(f"{path}: {name}: is {shown(text[:LONGEST_SHOWN])}; give a number above zero")
     return value

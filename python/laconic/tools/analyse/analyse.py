@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from laconic.core.given import finite_number
-from laconic.errors import BadInput, nearest_of
+from laconic.core.given import finite_number, one_of, several
+from laconic.errors import BadInput, shown
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import check_ideal_ground
 from laconic.tools.analyse.findings import Study, StudyOptions
@@ -30,13 +30,13 @@ def analyse(scene: Scene, parts: Sequence[str] = PARTS, *, at_s: float = 0.0) ->
     Raises BadInput for an unknown part, and for a scene whose ground or drive has no such motions.
     """
     check_scene(scene)
-    if isinstance(parts, str) or not isinstance(parts, Iterable):
+    if (given := several(parts)) is None:
         what = "one text" if isinstance(parts, str) else "no list"
-        raise BadInput(f"parts: {parts!r} is {what}; give a list, such as [{GEOMETRY!r}]")
+        raise BadInput(f"parts: {shown(parts)} is {what}; give a list, such as [{shown(GEOMETRY)}]")
     if not 0.0 <= finite_number("at_s", at_s) <= scene.run.duration_s:
         raise BadInput(f"at_s: {at_s:g} s lies outside the run; give 0 to {scene.run.duration_s:g} s")
-    if unknown := [part for part in parts if part not in PARTS]:
-        raise BadInput(f"parts: there is no {unknown[0]!r}; {nearest_of(str(unknown[0]), PARTS)}")
-    if not (chosen := tuple(part for part in PARTS if part in parts)):
+    for part in given:
+        one_of("parts", part, PARTS)
+    if not (chosen := tuple(part for part in PARTS if part in given)):
         raise BadInput(f"parts: is empty; give one or more of {', '.join(PARTS)}")
     return study(chosen_subject(scene, chosen, at_s), StudyOptions(chosen), lambda share, part: None)

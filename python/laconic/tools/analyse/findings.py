@@ -29,7 +29,7 @@ class FreePart:
     since_s: float
     energy_J: float
     integral: float | None
-    core_gap: float                  # largest difference of ν between closed form and exact-flow
+    core_gap: float                  # largest difference of ν between closed form and core
     energy_drift: float
     integral_drift: float | None
     portrait: Portrait | None

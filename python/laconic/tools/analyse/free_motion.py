@@ -5,7 +5,7 @@ With the heading as independent variable the system is linear: for φ = θ − �
 and the time is elementary, t = Λ ∫ dφ/ν3. With constraints the same holds with G Gᵀ in place of A⁻¹; where Ω = 0
 (a caster, an axle through the centre of mass) the sines become powers of φ.
 
-It shares no code with the core's `exact-flow` and checks it.
+It shares no code with the core's method that is exact for it, and checks that.
 """
 
 from __future__ import annotations

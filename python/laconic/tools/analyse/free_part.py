@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.scene.methods import EXACT
 from laconic.simulation import run_window
 from laconic.tools.analyse.findings import FreePart, Study, StudyOptions
 from laconic.tools.analyse.free_motion import FreeMotion
@@ -67,10 +68,10 @@ def _free_duration(subject: Subject, motion: FreeMotion) -> float:
 
 
 def _core_coasting(subject: Subject, motion: FreeMotion, times: np.ndarray) -> dict[str, Any]:
-    """exact-flow beside the closed form: largest gap and drift of the integrals."""
+    """The core's exact method beside the closed form: largest gap and drift of the integrals."""
     core, vehicle = subject.core, coasting(subject)
     start = [float(v) for v in motion.start_nu]
-    plant = core.plant(vehicle, "exact-flow", float(times[1] - times[0]), nu_rad_per_s=start)
+    plant = core.plant(vehicle, EXACT, float(times[1] - times[0]), nu_rad_per_s=start)
     held = core.input()
     model, state = core.ffi.addressof(plant.c, "model"), core.ffi.addressof(plant.c, "state")
     energy, integral = plant.energy_J(), float(core.lib.laconic_yaw_integral(model, state))
@@ -118,10 +119,10 @@ def _describe_free(result: Study, free: FreePart, options: StudyOptions) -> None
     drift = f"energy drifts by {free.energy_drift:.1e}"
     if free.integral_drift is not None:
         drift += f", K by {free.integral_drift:.1e}"
-    result.add("free", f"Closed form and the core's exact-flow differ by {free.core_gap:.1e} over "
+    result.add("free", f"Closed form and the core's {EXACT} differ by {free.core_gap:.1e} over "
                        f"{free.path_time_s[-1]:.4g} s; {drift} (relative).")
     if free.core_gap > 1e-9:
-        result.failures.append(f"closed form and exact-flow differ by {free.core_gap:.1e}")
+        result.failures.append(f"closed form and {EXACT} differ by {free.core_gap:.1e}")
     if free.portrait is None:
         result.add("free", "No phase portrait: ν3 does not change in free motion of this vehicle.")
     elif subject.model.dof == 3:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import null_space
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, shown
 from laconic.tools.analyse.field import Field
 from laconic.tools.analyse.from_core import Inputs, Subject, changed, field_of
 from laconic.tools.analyse.reach import reach_rad_per_s
@@ -122,7 +122,7 @@ def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | N
     if name in VEHICLE_KEYS:
         return vehicle_parameter(subject, name)
     known = ", ".join((*COMMANDS, "input_scale", *VEHICLE_KEYS))
-    raise BadInput(f"--parameter: there is no {name!r}; known are {known}")
+    raise BadInput(f"--parameter: there is no {shown(name)}; known are {known}")
 
 
 def _is_possible(subject: Subject, name: str) -> bool:

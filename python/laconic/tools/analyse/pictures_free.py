@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from laconic.pictures.method_style import style_of
 from laconic.pictures.plotting import figure
+from laconic.scene.methods import EXACT
 from laconic.tools.analyse.findings import FreePart, Study
 from laconic.tools.analyse.picture_parts import BOLD, THIN, head, keys, legend_below, speed_axes
 from laconic.tools.analyse.portrait import half_curves
@@ -93,7 +94,7 @@ def path_picture(study: Study) -> Figure | None:
     axes = picture.subplots()
     axes.plot(*free.path_m.T, color="0.75", lw=3.0, label="closed form")
     every = max(1, len(free.path_m) // 120)
-    axes.plot(*free.core_path_m[::every].T, **style_of("exact-flow", 4.0, linestyle="none", label="core, exact-flow"))
+    axes.plot(*free.core_path_m[::every].T, **style_of(EXACT, 4.0, linestyle="none", label=f"core, {EXACT}"))
     axes.plot(0.0, 0.0, "o", color="tab:green", label="start")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x [m]", ylabel="y [m]", title=head(study, _path_title(free)))

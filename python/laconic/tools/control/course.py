@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.core.copies import OwnMemory
 from laconic.core.derivatives import check_smooth
 from laconic.core.given import finite_number, shown
 from laconic.core.given_array import real_array
@@ -23,7 +24,7 @@ MOST_STEPS = 10**6
 ROUNDING = 1e-7  # of a duration beside the nearest whole number of steps, which single precision rounds
 
 
-class Course:
+class Course(OwnMemory):
     """States (steps + 1, 6) in the order ν1, ν2, ν3, x, y, θ, and voltages (steps, N), at the steps of `plant`.
 
     `pose_at(t)` gives x, y of the centre of mass and the heading, not wrapped, also a moment before 0 and after the

@@ -9,15 +9,17 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from laconic.core.copies import OwnMemory
 from laconic.core.derivatives import check_smooth
 from laconic.core.encoders import is_unsigned, signed
-from laconic.core.given import finite_number, number, numbers, shown, step_count
+from laconic.core.given import finite_number, number, numbers, several, shown, step_count
 from laconic.core.given_array import real_array
 from laconic.core.plant import Plant, Pose
 from laconic.core.saved import check_saved
@@ -35,7 +37,7 @@ class Innovation(NamedTuple):
     square: float  # rᵀS⁻¹r: χ²-distributed with `numbers` degrees of freedom where the filter's settings are right
 
 
-class Filter:
+class Filter(OwnMemory):
     """Estimates ν, pose and the gyro's bias of a vehicle like `plant`, from where the plant is now.
 
     `settings`: members of laconic_filter_settings by name; of nu_std_rad_per_s and encoder_std_rad one number for all
@@ -45,13 +47,15 @@ class Filter:
     Raises BadInput for what is unknown, no number or not usable, and for a vehicle with friction.
     """
 
+    RENEWED: ClassVar[dict[str, Any]] = {"_model": None, "_integrator": None}
+
     def __init__(self, plant: Plant, settings: Mapping[str, Any], *, encoder: Mapping[str, Any] | None = None,
                  start_count: ArrayLike | None = None):
         check_smooth(plant)
         self.core, self.wheel_count = plant.core, plant.wheel_count
         ffi = self.core.ffi
-        self._plant = Plant(self.core, ffi.new("laconic_plant *", plant.c[0]))
-        self._model, self._integrator = (ffi.addressof(self._plant.c, name) for name in ("model", "integrator"))
+        self._plant = copy.copy(plant)
+        self._look_into_plant()
         self.c: Any = ffi.new("laconic_filter *")
         self._innovation = ffi.new("laconic_innovation *")
         self._sensors = None if encoder is None else self._encoders(encoder)
@@ -62,6 +66,18 @@ class Filter:
         self._count = self._counts([0] * self.wheel_count if start_count is None else start_count)
         self._check(self.core.lib.laconic_filter_start(
             self.c, self._model, self._settings(settings), ffi.addressof(self._plant.c, "state")), "settings")
+
+    def _look_into_plant(self) -> None:
+        at = self.core.ffi.addressof
+        self._model, self._integrator = (at(self._plant.c, name) for name in ("model", "integrator"))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return super().__getstate__() | {"_count": list(self._count)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__(state)
+        self._count = self.core.ffi.new("int32_t[]", state["_count"])
+        self._look_into_plant()
 
     # ---- prediction and readings
 
@@ -155,7 +171,7 @@ class Filter:
 
     def save(self) -> Any:
         """A copy of all that the filter knows."""
-        return self._is_of, self.core.ffi.new("laconic_filter *", self.c[0]), self._count
+        return self._is_of, self.core.ffi.new("laconic_filter *", self.c[0]), tuple(self._count)[: self.wheel_count]
 
     def restore(self, saved: Any) -> None:
         """Back to what `save` gave; BadInput for what the filter of another robot, step, precision or encoder gave."""
@@ -163,13 +179,16 @@ class Filter:
             raise BadInput(f"saved: {shown(saved)} is not of this filter; give what its save() gave")
         is_of, state, count = saved
         ffi = self.core.ffi
-        if not (isinstance(state, ffi.CData) and isinstance(count, ffi.CData)):
+        is_state = isinstance(state, ffi.CData) and ffi.typeof(state) is ffi.typeof(self.c)
+        if not (isinstance(state, ffi.CData) and isinstance(count, tuple)):
             raise BadInput(f"saved: {shown(saved)} is not of this filter; give what its save() gave")
         for name, ours in self._is_of.items():
             if is_of.get(name) != ours:
                 raise BadInput(f"saved: is not of this filter, whose {name} is another; give what its save() gave")
+        if not is_state:
+            raise BadInput(f"saved: {shown(state)} is not of this filter; give what its save() gave")
         check_saved(self.core, "saved", state[0])
-        self.c[0], self._count = state[0], count
+        self.c[0], self._count = state[0], self._counts(count)
 
     # ---- between numpy and C
 
@@ -201,7 +220,8 @@ class Filter:
             if name not in known:
                 raise BadInput(f"settings.{name}: unknown key; {nearest_of(str(name), known)}")
             if name in counts:
-                value = [value] * counts[name] if np.ndim(value) == 0 else _list(value)
+                many = several(value)
+                value = [value] * counts[name] if many is None else many
                 setattr(made, name, [_usable(f"{name}[{k + 1}]", each, self.core.dtype) for k, each in
                                      enumerate(numbers(f"settings.{name}", value, counts[name]))])
             else:
@@ -239,10 +259,6 @@ class Filter:
         why, state = self.core.why(), self.core.ffi.addressof(self.c, "state")
         self.core.lib.laconic_step_refusal(why, status, self._model, self._integrator, state, held, 1)
         return self.core.refusal(why)
-
-
-def _list(values: Any) -> Any:
-    return values.tolist() if isinstance(values, np.ndarray) else values
 
 
 def _usable(name: str, value: float, dtype: Any) -> float:

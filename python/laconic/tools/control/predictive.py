@@ -13,11 +13,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any, ClassVar
 
 import numpy as np
 import osqp
 from scipy import sparse
 
+from laconic.core.copies import OwnMemory
 from laconic.core.given import number, shown, whole_number
 from laconic.core.given_array import AtLeast, check_finite, real_array
 from laconic.errors import BadInput
@@ -34,14 +36,17 @@ WEIGHTS = (0.02, 0.02, 0.02, 400.0, 400.0, 100.0)  # of squares of rad/s, rad/s,
 VOLTAGE_WEIGHT = 0.02  # of the square of a V beside the course's own
 
 
-class PredictiveController:
+class PredictiveController(OwnMemory):
     """Voltages (N,) for a robot on a `course`, never beyond ± limit_V.
 
     `horizon`: steps of the course that a plan reaches ahead. `weights` (6,) of squares of what is off in ν1, ν2, ν3
     [rad/s], x, y [m], θ [rad], ten times that at a plan's end; `voltage_weight` of squares of voltages beside the
     course's own. Beyond the end of the course its last pose is held to, at rest, for as long as steps are asked for. A
-    plan costs one Jacobian and one programme. BadInput names the argument that does not fit.
+    plan costs one Jacobian and one programme. BadInput names the argument that does not fit. A copy's first plan is
+    solved from nothing, and agrees with the original's within the programme's precision.
     """
+
+    RENEWED: ClassVar[dict[str, Any]] = {"_linear": None, "_solver": None}
 
     def __init__(self, course: Course, limit_V: float, *, horizon: int = 20, weights: Sequence[float] = WEIGHTS,
                  voltage_weight: float = VOLTAGE_WEIGHT):
@@ -55,10 +60,17 @@ class PredictiveController:
         if squares.min() < 0:
             raise BadInput(f"weights: {shown(weights)}: give six numbers that are 0 or more")
         self.wheels = course.plant.wheel_count
-        self._linear = lru_cache(maxsize=2 * self.horizon + 2)(self._linearised)
+        self._keep_linearised()
         self._solver: osqp.OSQP | None = None
         self._weights = self._cost(squares, _above_0("voltage_weight", voltage_weight))
         self._pattern = Pattern(self.horizon, self.wheels)
+
+    def _keep_linearised(self) -> None:
+        self._linear = lru_cache(maxsize=2 * self.horizon + 2)(self._linearised)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__(state)
+        self._keep_linearised()
 
     def voltages(self, step: int, state: np.ndarray) -> np.ndarray:
         """The voltages for this step of the course, from 0 on, in this state: ν1, ν2, ν3, x, y, θ, and more that is

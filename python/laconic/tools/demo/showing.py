@@ -12,10 +12,11 @@ from rich.markup import escape
 from rich.table import Table
 
 from laconic.base.outputs import opened, write_text
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.demo.main_job import PARTICIPANTS, SceneResult
 from laconic.tools.demo.work import Point
 
-SHOWN_METHODS = ("auto", "rk4")
+SHOWN_METHODS = ("auto", EXPLICIT)
 SHOWN_FACTORS = (1, 10, 50)
 
 

@@ -1,4 +1,5 @@
-"""What rounding in single precision can do in one rk4 step at most, proved, for all states and inputs of a scene.
+"""What rounding in single precision can do in one explicit step of fourth order at most, proved, for all states and
+inputs of a scene.
 
 Beside the same step in exact arithmetic with the constants as the core prepared them. Sums of a state carry what they
 could not take up, so the bounds do not grow with the distance travelled or the turns made.
@@ -15,6 +16,7 @@ from flint import arb
 from laconic.core import load
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
+from laconic.scene.methods import EXPLICIT
 from laconic.simulation import advance_plant
 from laconic.tools.enclosure.balls import ball, precision, upper
 from laconic.tools.enclosure.readings import check_enclosable
@@ -88,10 +90,10 @@ def box_of(scene: Scene) -> Box:
 
 
 def rounding_bounds(scene: Scene) -> Bounds:
-    """Of an rk4 step of the scene's length. BadInput for a scene that has no such bound, Refused for a step that rk4
-    does not take."""
+    """Of an explicit step of the scene's length. BadInput for a scene that has no such bound, Refused for a step that
+    the method does not take."""
     check_enclosable(scene)
-    scene = scene.with_run(method="rk4", real="single")
+    scene = scene.with_run(method=EXPLICIT, real="single")
     box, plant = box_of(scene), scene.plant(load("single"))
     with precision(BITS):
         form = Format.of("single")

@@ -1,7 +1,7 @@
 """Polynomials near the motion over one step: Taylor's, and those of the slow motion once fast damping has died away.
 
-Nothing here need be right for the enclosure to hold: laconic.tools.enclosure.defect measures how far a polynomial misses
-the equation. All numbers are exact midpoints; time counts from the step's start, in seconds.
+Nothing here need be right for the enclosure to hold: laconic.tools.enclosure.defect measures how far a polynomial
+misses the equation. All numbers are exact midpoints; time counts from the step's start, in seconds.
 """
 
 from __future__ import annotations

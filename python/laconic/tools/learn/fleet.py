@@ -11,13 +11,15 @@ import numpy as np
 
 from laconic.batch import Batch
 from laconic.batch.given import lane_count, thread_count
+from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number
 from laconic.errors import BadInput
+from laconic.scene.methods import STIFF_4
 from laconic.tools.learn.task import Motion, Rules, checked_actions, distance_of, has_left, has_reached, observed
 from laconic.tools.learn.variants import Spread, vehicles_of
 
 
-class Fleet:
+class Fleet(OwnMemory):
     """`lanes` robots of a scene. An action is held for `action_s`, in steps of `step_s` by `method`. The usual one
     takes any damping at a small and equal cost; `auto` has ten digits more for up to 25 times that.
 
@@ -26,7 +28,7 @@ class Fleet:
     """
 
     def __init__(self, lanes: int, scene: str | Path = "robotino2", *, action_s: float = 0.05, step_s: float = 0.005,
-                 method: str = "exponential-kahan-4", real: str = "double",
+                 method: str = STIFF_4, real: str = "double",
                  spreads: Mapping[str, Spread] | None = None,
                  variants: int = 64, variant_seed: int = 0, threads: int = 1, **rules: float):
         known = {field.name for field in fields(Rules)}

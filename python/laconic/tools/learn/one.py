@@ -7,13 +7,14 @@ from typing import Any
 import gymnasium
 import numpy as np
 
+from laconic.core.copies import OwnMemory
 from laconic.errors import BadInput
 from laconic.tools.learn.fleet import Fleet
 from laconic.tools.learn.spaces import action_space, check_open, checked_seed, observation_space
 from laconic.tools.learn.task import checked_actions
 
 
-class DriveToPose(gymnasium.Env[np.ndarray, np.ndarray]):
+class DriveToPose(OwnMemory, gymnasium.Env[np.ndarray, np.ndarray]):
     """A fleet of one; settings are those of Fleet. An episode's length is bounded by gymnasium.make()."""
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012

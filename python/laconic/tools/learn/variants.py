@@ -42,7 +42,7 @@ def vehicles_of(scene: str | Path, spreads: Mapping[str, Spread], count: int, se
 
 
 def _range_of(tables: SceneTables, key: str, spread: Any) -> tuple[float, float]:
-    name = f"spreads[{key!r}]"
+    name = f"spreads[{shown(key)}]"
     path = key_path(key)
     if path.tables[:1] != (("vehicle", None),) or path.known.kind != "number":
         raise BadInput(f"{name}: is no number of the vehicle; give keys such as vehicle.mass_kg")

@@ -9,13 +9,14 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from laconic.core.copies import OwnMemory
 from laconic.core.given import by_names, shown, step_count
 from laconic.errors import BadInput
 from laconic.tools.learn.fleet import Fleet
 from laconic.tools.learn.spaces import action_space, check_open, generators_of, observation_space
 
 
-class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
+class DriveToPoseVector(OwnMemory, VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     """`num_envs` robots. Robot k of seed s does what DriveToPose does with seed s + k, bit for bit.
 
     `max_episode_steps`: actions until an episode is truncated; None: never. `autoreset_mode` by Gymnasium's contract:

@@ -9,6 +9,7 @@ from typing import Any
 
 from laconic.base.progress import progress_bar
 from laconic.scene import METHODS, Outputs, Scene, read_scene
+from laconic.scene.methods import EXACT
 from laconic.tools.enclosure.rounding_bound import rounding_row
 from laconic.tools.report import (
     accuracy,
@@ -123,7 +124,7 @@ def _boards(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Wor
     if not M4F.present:
         return {"boards": [], "scenes": [], "smallest": []}
     targets_here = (M4F,) if quick else BOARDS
-    smallest = replace(read_scene(FREE_SCENE).with_run(method="exact-flow"),
+    smallest = replace(read_scene(FREE_SCENE).with_run(method=EXACT),
                        outputs=Outputs(signals=tuple(f"nu_rad_per_s[{k}]" for k in (1, 2, 3))))
     return {"boards": boards.method_rows(workshop, bench, REALS, targets_here, advance=advance),
             "scenes": boards.scene_rows(workshop, scenes, REALS, advance=advance),

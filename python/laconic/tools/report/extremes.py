@@ -16,10 +16,11 @@ from laconic.core import Core, load
 from laconic.core.plant import Plant
 from laconic.errors import LaconicError, Refused
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import STIFF_8
 from laconic.tools.report.exact_reference import exact_states
 
 STEP_S, STEPS, LONG_STEPS = 0.01, 100, 10
-METHODS = ("auto", "exponential-gauss-8")
+METHODS = ("auto", STIFF_8)
 LARGEST_ANGLE_RAD = 1e4  # of yaw in the run, up to which the motion is followed in 50 digits
 METHOD_ERROR = 1e-6  # what the step may cost; rounding may cost as many digits as the condition number has
 COARSE = 0.5  # from there on no digit is right

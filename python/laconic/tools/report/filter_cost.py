@@ -16,6 +16,7 @@ import numpy as np
 from laconic.core import load
 from laconic.errors import BadInput
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.control.filter import Filter
 from laconic.tools.report.binary_tools import run_tool
 from laconic.tools.report.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
@@ -30,7 +31,7 @@ SETTINGS = {"voltage_noise_V_per_sqrt_Hz": 0.1, "force_noise_N_per_sqrt_Hz": 0.0
             "bias_noise_rad_per_s2_per_sqrt_Hz": 1e-4, "position_std_m": 0.05, "heading_std_rad": 0.1,
             "bias_std_rad_per_s": 0.03, "yaw_rate_std_rad_per_s": 8e-3}
 ROOTS = ("laconic_filter_start", "laconic_filter_encoders", "laconic_filter_yaw_rate")
-ROBOTS = (("robotino2", "rk4"), ("robotino2", "auto"), ("kuka_youbot", "auto"), ("turtlebot3_burger", "auto"))
+ROBOTS = (("robotino2", EXPLICIT), ("robotino2", "auto"), ("kuka_youbot", "auto"), ("turtlebot3_burger", "auto"))
 
 
 @dataclass(frozen=True)

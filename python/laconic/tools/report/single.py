@@ -8,6 +8,7 @@ import numpy as np
 
 from laconic.core import load
 from laconic.scene import Scene
+from laconic.scene.methods import EXACT
 from laconic.tools.report.accuracy import follow
 from laconic.tools.verify.reference import reference_states
 
@@ -45,7 +46,7 @@ def straight_run(scene: Scene, speed: float = 0.7) -> dict[str, float]:
     """Ten million steps straight ahead in single precision: relative error of x."""
     core = load("single")
     free = {**scene.vehicle, "motor_gain_Nm_per_V": 0.0, "motor_damping_Nms": 0.0}
-    plant = core.plant(core.vehicle(free), "exact-flow", LONG_STEP_S, nu_rad_per_s=(speed, 0.0, 0.0), x_m=100.0)
+    plant = core.plant(core.vehicle(free), EXACT, LONG_STEP_S, nu_rad_per_s=(speed, 0.0, 0.0), x_m=100.0)
     plant.run(core.input(), LONG_STEPS)
     travelled = float(np.float32(LONG_STEP_S)) * LONG_STEPS * float(np.float32(speed)) * scene.vehicle["wheel_radius_m"]
     expected = 100.0 + travelled

@@ -10,6 +10,7 @@ from typing import Any
 from laconic.base.paths import SOURCE_DIR
 from laconic.errors import BadInput
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.report.counting import count_on_board, host_state, size_of_step
 from laconic.tools.report.counting_board import instructions_by_kind
 from laconic.tools.report.workshop import M4F, Variant, Workshop
@@ -28,7 +29,7 @@ def rows() -> list[Row]:
     with TemporaryDirectory() as folder:
         ours, theirs = (additions(Path(folder), soft) for soft in (True, False))
         table = [{"who": text, "soft_double": ours[kind], "libgcc": theirs[kind]} for kind, text in KINDS.items()]
-        for method in ("rk4", "auto"):
+        for method in (EXPLICIT, "auto"):
             table += step_rows(Path(folder), method)
     return table
 

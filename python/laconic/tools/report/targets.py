@@ -9,6 +9,7 @@ from typing import Any
 
 from laconic.core import load
 from laconic.scene import METHODS
+from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, STIFF, STIFF_4
 from laconic.tools.report.speed import WANTED_ERROR, cheapest
 
 Row = dict[str, Any]
@@ -87,13 +88,13 @@ def structure_targets(results: Results) -> list[Target]:
     """What is conserved, and what never grows."""
     found = []
     for real, limit in (("double", 1e-13), ("single", 1e-4)):
-        rows = select(results["drift"], real=real, method="exact-flow")
+        rows = select(results["drift"], real=real, method=EXACT)
         length = f"{worst(rows, 'steps') or 0:,} steps"
         for what in ("energy", "K"):
-            found.append(at_most("structure", f"exact-flow, {real}: drift of {what} over {length}", worst(rows, what),
+            found.append(at_most("structure", f"{EXACT}, {real}: drift of {what} over {length}", worst(rows, what),
                                  limit))
-        grown = one(results["norm"], "worst_growth_ulp", real=real, method="exact-flow")
-        what = f"exact-flow, {real}: growth of the A-norm in one step, U = 0 [ulp]"
+        grown = one(results["norm"], "worst_growth_ulp", real=real, method=EXACT)
+        what = f"{EXACT}, {real}: growth of the A-norm in one step, U = 0 [ulp]"
         found.append(at_most("structure", what, grown, 4))
     tables = results["prototype"]
     found.append(at_least("structure", "prototype's table: cases reproduced or beaten, of " + str(len(tables)),
@@ -145,18 +146,17 @@ def single_targets(results: Results) -> list[Target]:
 def speed_targets(results: Results) -> list[Target]:
     """Against CasADi's RK4, CVODE and DOP853."""
     steps, found = results["steps"], []
-    limits = {"rk4": 0.45, "exponential-kahan": 0.55, "exponential-kahan-4": 0.95, "exact-flow": 0.7,
-              "exact-flow-4": 1.5}
+    limits = {EXPLICIT: 0.45, STIFF: 0.55, STIFF_4: 0.95, EXACT: 0.7, EXACT_4: 1.5}
     for method, limit in limits.items():
         ratio = one(steps, "ratio", who=method, real="double", build="whole")
         found.append(at_most("speed", f"{method}, double: time of a step over CasADi's RK4", ratio, limit))
-    found.append(at_most("speed", "rk4, single: time of a step over CasADi's RK4",
-                         one(steps, "ratio", who="rk4", real="single", build="whole"), 0.6))
+    found.append(at_most("speed", f"{EXPLICIT}, single: time of a step over CasADi's RK4",
+                         one(steps, "ratio", who=EXPLICIT, real="single", build="whole"), 0.6))
     for real in ("double", "single"):
-        found.append(at_most("speed", f"rk4, {real}: instructions a step on the host",
-                             one(steps, "instructions", who="rk4", real=real, build="whole"), 580))
-    found.append(at_most("speed", "rk4, double, trimmed: time of a step over CasADi's RK4",
-                         one(steps, "ratio", who="rk4", real="double", build="trimmed"), 0.5))
+        found.append(at_most("speed", f"{EXPLICIT}, {real}: instructions a step on the host",
+                             one(steps, "instructions", who=EXPLICIT, real=real, build="whole"), 580))
+    found.append(at_most("speed", f"{EXPLICIT}, double, trimmed: time of a step over CasADi's RK4",
+                         one(steps, "ratio", who=EXPLICIT, real="double", build="trimmed"), 0.5))
     rows = results["precision"]
     ours = cheapest(rows, lambda who: who in METHODS)
     for name, limit in (("CVODE", 25.0), ("DOP853 compiled", 6.0)):
@@ -170,13 +170,15 @@ def board_targets(results: Results) -> list[Target]:
     """Cortex-M4F, single, three wheels."""
     rows = select(results["boards"], processor="Cortex-M4F", real="single")
     fast = select(rows, optimisation="-O2", build="whole")
-    small = select(rows, method="rk4", optimisation="-Os", build="trimmed")
+    small = select(rows, method=EXPLICIT, optimisation="-Os", build="trimmed")
     group = "Cortex-M4F, single"
-    found = [at_most(group, "rk4: instructions a step", one(fast, "instructions", method="rk4"), 460),
-             at_most(group, "exponential-kahan-4: instructions a step",
-                     one(fast, "instructions", method="exponential-kahan-4"), 850),
-             at_most(group, "rk4 with pose, -O2: bytes of step code", one(fast, "step_code", method="rk4"), 2.2 * 1024),
-             at_most(group, "rk4 with pose, trimmed, -Os: bytes of step code", one(small, "step_code"), 1.5 * 1024),
+    found = [at_most(group, f"{EXPLICIT}: instructions a step", one(fast, "instructions", method=EXPLICIT), 460),
+             at_most(group, f"{STIFF_4}: instructions a step",
+                     one(fast, "instructions", method=STIFF_4), 850),
+             at_most(group, f"{EXPLICIT} with pose, -O2: bytes of step code",
+                     one(fast, "step_code", method=EXPLICIT), 2.2 * 1024),
+             at_most(group, f"{EXPLICIT} with pose, trimmed, -Os: bytes of step code", one(small, "step_code"),
+                     1.5 * 1024),
              at_most(group, "free motion, ν only, trimmed, -Os: bytes of step code",
                      one(results["smallest"], "step_code"), 1024),
              at_most(group, "worst stack of any method, -O2 [bytes]", worst(fast, "worst_stack"), 320),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.tools.report.collect import MAP_SCENE
 
 GOALS = """
@@ -41,13 +42,13 @@ Dashed: h·r = 1. The last map is that of the friction step, on ground with fric
 The table: auto on very stiff vehicles. Sinusoids are sampled at the start, middle and end of each step.
 """
 
-CONSERVED = """
+CONSERVED = f"""
 Free motion of the paper's three-wheel carriage in steps of 0.1 s. Both integrals of the motion, the energy and K =
 (Aν)₃, the third component of inertia times velocity, should stay constant.
 Curves that coincide are drawn one inside the other.
 
 The table: one step with U = 0 of ten thousand random vehicles in random states, h from 1e-6 to 1e3 s; the A-norm
-√(νᵀAν) may not grow. Methods other than exact-flow refuse the step when it grows by more than their error allows
+√(νᵀAν) may not grow. Methods other than {EXACT} refuse the step when it grows by more than their error allows
 (2⁻¹⁰).
 """
 
@@ -98,12 +99,12 @@ digits; `coarse`: some digits are, as the step is long; `number`: finite, but to
 """
 
 
-ROUNDING = """
-What single precision can and cannot do: proved bounds of what rounding does in one step of rk4 to ν, heading and place,
-for all states within what the scene's run shows of each axis, beside the same step in exact arithmetic with the same
-prepared constants. Per hour: what heading and place are off by for their own rounding if every step rounded as badly as
-it can, all one way; an error of ν acts on them besides, as any does. As the sums of a state carry what they could not
-take up, the bounds do not grow with the way travelled or the turns made.
+ROUNDING = f"""
+What single precision can and cannot do: proved bounds of what rounding does in one step of {EXPLICIT} to ν, heading
+and place, for all states within what the scene's run shows of each axis, beside the same step in exact arithmetic with
+the same prepared constants. Per hour: what heading and place are off by for their own rounding if every step rounded as
+badly as it can, all one way; an error of ν acts on them besides, as any does. As the sums of a state carry what they
+could not take up, the bounds do not grow with the way travelled or the turns made.
 """
 
 

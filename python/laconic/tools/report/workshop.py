@@ -14,6 +14,7 @@ from laconic.base.paths import SOURCE_DIR, sources_missing
 from laconic.core import Core, load
 from laconic.errors import ResultFails
 from laconic.scene import Scene
+from laconic.scene.methods import ROWS
 from laconic.tools.report.binary_tools import run_tool
 from laconic.tools.report.core_archive import CoreArchive, undefined
 from laconic.tools.trim import Trimmed, trimmed
@@ -21,7 +22,9 @@ from laconic.tools.trim.c_tables import initializer
 
 BENCH = SOURCE_DIR / "core_c" / "bench"
 FLAGS = ("-std=c99", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-ffunction-sections", "-fdata-sections")
-WITH_WEIGHTS = ("auto", "exponential-gauss-8")  # methods for which an integrator is larger
+PARTS = {row.name: row.needs for row in ROWS}
+"""What each method needs of a build: the end of a macro LACONIC_WITH_…, or NOTHING."""
+LEFT_OUT = sorted({need for need in PARTS.values() if need != "NOTHING"})
 SAMPLED_STEPS = 16  # of a scene with sampled inputs, taken again and again
 
 
@@ -126,13 +129,13 @@ def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = Non
 def _whole(variant: Variant) -> str:
     """The folder of what is built for all scenes alike."""
     method = variant.scene.run.method
-    return f"whole_{method}" if method in WITH_WEIGHTS else "whole"
+    return f"whole_{method}" if PARTS[method] in LEFT_OUT else "whole"
 
 
 def _trimmed(variant: Variant) -> str:
     """The folder of what is built for a scene, whose methods share a core but those with structs of their own."""
     method, stem = variant.scene.run.method, variant.scene.path.stem
-    return f"trimmed_{stem}_{method}" if method in WITH_WEIGHTS else f"trimmed_{stem}"
+    return f"trimmed_{stem}_{method}" if PARTS[method] in LEFT_OUT else f"trimmed_{stem}"
 
 
 def _kind(target: Target, variant: Variant, extra: Sequence[str] = ()) -> str:
@@ -177,8 +180,8 @@ class Workshop:
         found = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
         if variant.trim:
             found.append(f'-DLACONIC_SCENE_HEADER="{folder / "laconic_scene.h"}"')
-        elif target.machine and variant.scene.run.method not in WITH_WEIGHTS:
-            found.append("-DLACONIC_WITH_EXPONENTIAL_GAUSS=0")
+        elif target.machine:
+            found += [f"-DLACONIC_WITH_{need}=0" for need in LEFT_OUT if need != PARTS[variant.scene.run.method]]
         return found
 
     def includes(self) -> list[str]:
@@ -236,7 +239,7 @@ class Workshop:
         return self._link(HOST, variant, "bench.so", [BENCH / "bench.c"], ["-shared", "-Wl,-Bsymbolic"], ["-fPIC"])
 
     def hand_program(self, variant: Variant, *, refuses: bool) -> Path:
-        """Counts steps of the kernel that was written by hand for rk4; it knows the model, so it has it in itself."""
+        """Counts steps of the kernel that was written by hand for one method; the model is part of it."""
         return self._hand(variant, f"hand{refuses:d}", [BENCH / "count_host.c"], [f"-DHAND_REFUSES={refuses:d}"])
 
     def hand_library(self, variant: Variant, *, refuses: bool) -> Path:

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, nearest_of, shown
 from laconic.scene.key_path import KeyPath, key_path
 
 MOST_GRID = 10**9
@@ -72,7 +72,7 @@ def _number(text: str, given: str) -> float:
     try:
         value = float(given)
     except ValueError:
-        _fail(text, f"{given.strip()!r} is no number; {USES}")
+        _fail(text, f"{shown(given.strip())} is no number; {USES}")
     if not math.isfinite(value):
         _fail(text, f"{given.strip()} is not finite; give a finite number")
     return value
@@ -88,9 +88,9 @@ def _levels(text: str, key: KeyPath, given: str) -> tuple[Any, ...]:
     if len(parts) != 3 or key.known.kind != "number":
         _fail(text, "is no range; give KEY=a:b:n, n values from a to b, or a list KEY=a,b,c")
     first, last = (_number(text, each) for each in parts[:2])
-    if not re.fullmatch(r"\s*\d+\s*", parts[2]) or not 1 <= int(parts[2]) <= MOST_GRID:
-        _fail(text, f"{parts[2].strip()!r} is no number of values; give a whole number from 1 to {MOST_GRID}, such as "
-                    f"{parts[0]}:{parts[1]}:11")
+    if not re.fullmatch(r"\s*\d{1,9}\s*", parts[2]) or not 1 <= int(parts[2]) <= MOST_GRID:
+        _fail(text, f"{shown(parts[2].strip())} is no number of values; give a whole number from 1 to {MOST_GRID}, "
+                    f"such as {parts[0]}:{parts[1]}:11")
     count = int(parts[2])
     if (count == 1) is not (first == last):
         _fail(text, "needs two values or more from one number to another; give a larger n, or KEY=a for one")
@@ -102,11 +102,11 @@ def _level(text: str, key: KeyPath, given: str) -> Any:
         return _number(text, given)
     if key.known.kind == "true or false":
         if given not in ("true", "false"):
-            _fail(text, f"{given!r} is neither true nor false; give one of them")
+            _fail(text, f"{shown(given)} is neither true nor false; give one of them")
         return given == "true"
     if key.known.kind == "whole number":
-        if not re.fullmatch(r"-?\d+", given):
-            _fail(text, f"{given!r} is no whole number; give one")
+        if not re.fullmatch(r"-?\d{1,18}", given):
+            _fail(text, f"{shown(given)} is no whole number; give one")
         return int(given)
     if not given:
         _fail(text, f"has an empty word in its list; {USES}")
@@ -119,7 +119,7 @@ def _distribution(text: str, key: KeyPath, given: str) -> Varied:
         _fail(text, "is no distribution; give KEY~normal(mean, standard deviation)")
     name, parts = found[1], [each for each in found[2].split(",") if each.strip()]
     if name not in DISTRIBUTIONS:
-        _fail(text, f"there is no distribution {name!r}; {nearest_of(name, DISTRIBUTIONS)}")
+        _fail(text, f"there is no distribution {shown(name)}; {nearest_of(name, DISTRIBUTIONS)}")
     if key.known.kind != "number":
         _fail(text, f"{key.text} is {key.known.kind}, not a number; give a list KEY=a,b")
     wanted = DISTRIBUTIONS[name]

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput, LaconicError, ResultFails
+from laconic.errors import BadInput, LaconicError, ResultFails, words_of
 from laconic.tools.sweep.chunk import Rows, plan_of, run_chunk
 from laconic.tools.sweep.plan import Plan
 
@@ -101,7 +101,8 @@ def _reason_of(future: Any) -> LaconicError:
         return error
     if isinstance(error, KilledWorker):
         return ResultFails(f"{MOST_DEATHS} workers died under it, perhaps for lack of memory")
-    return ResultFails(f"unexpected {type(error).__name__}: {error}")
+    return ResultFails("an unexpected fault of the program on a worker; LACONIC_TRACEBACK=1 with --workers 0 shows it, "
+                       "for a report")
 
 
 @contextmanager
@@ -150,7 +151,7 @@ def cluster_client(address: str, is_told: bool = True) -> Iterator[Any]:
     try:
         client = Client(address, timeout=CONNECT_S, name="laconic-sweep")
     except (OSError, ValueError, TimeoutError) as error:
-        raise BadInput(f"--scheduler {address}: cannot be reached ({str(error) or type(error).__name__}); start "
+        raise BadInput(f"--scheduler {address}: cannot be reached ({words_of(error, 'it does not answer')}); start "
                        "`dask scheduler` and give its address, such as tcp://127.0.0.1:8786") from None
     with client:
         if is_told and not client.nthreads():

@@ -19,12 +19,13 @@ from laconic.base.outputs import write_text
 from laconic.core import Core, load
 from laconic.core.plant import Plant
 from laconic.scene import Scene
+from laconic.scene.methods import ROWS
 from laconic.tools.trim.c_tables import initializer
 
 OF_EACH_WHEEL = ("voltage_scale", "motor_gain_Nm_per_V", "motor_damping_Nms", "wheel_inertia_kgm2")
 """Members of laconic_model that have one item where all wheels are alike."""
 FRICTION = "friction"  # the method that a plant with friction chooses
-EXPONENTIAL_GAUSS = "exponential-gauss-8"
+NEED_OF = {row.name: row.needs for row in ROWS}  # what a method needs of a build: the end of LACONIC_WITH_…
 POSE = ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")
 
 
@@ -125,7 +126,8 @@ def header_of(scene: Scene, real: str, needs: Needs, method: str) -> str:
              f"#define LACONIC_MAX_WHEELS {max(1, n)}", f"#define LACONIC_MAX_SUPPORTS {supports}",
              f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
     lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
-    lines += [f"#define LACONIC_WITH_EXPONENTIAL_GAUSS {int(method == EXPONENTIAL_GAUSS)}"]
+    lines += [f"#define LACONIC_WITH_{need} {int(NEED_OF.get(method) == need)}"
+              for need in sorted(set(NEED_OF.values()) - {"NOTHING"})]
     return "\n".join([*lines, "#endif", ""])
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from laconic.core import Core
 from laconic.core.plant import Plant
-from laconic.errors import BadInput, Refused, reason_of
+from laconic.errors import BadInput, Refused, reason_of, shown
 from laconic.scene import MOST_STEPS
 from laconic.scene.table import Table
 
@@ -43,8 +43,12 @@ def read_reference(path: Path) -> list[Table]:
         content = json.loads(path.read_bytes())
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give a reference file") from None
-    except (ValueError, RecursionError) as error:
-        raise BadInput(f"{path}: is no valid JSON: {error}; give a reference file") from None
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        where = f" in line {error.lineno}" if isinstance(error, json.JSONDecodeError) else " in UTF-8"
+        raise BadInput(f"{path}: is no valid JSON{where}; give a reference file") from None
+    except (ValueError, RecursionError):
+        raise BadInput(f"{path}: is no valid JSON: it nests its lists too deeply, or holds a number of thousands of "
+                       "digits; give a reference file") from None
     if not isinstance(content, dict):
         raise BadInput(f"{path}: contains no object with cases; give a reference file")
     top = Table(path, "", content)
@@ -148,7 +152,7 @@ def decimal(state: Table, key: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        state.fail(key, f"holds {text!r}; give finite decimal numbers")
+        state.fail(key, f"holds {shown(text)}; give finite decimal numbers")
     return value
 
 

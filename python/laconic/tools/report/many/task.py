@@ -16,6 +16,7 @@ import numpy as np
 from laconic.batch import Batch
 from laconic.core import Vehicle
 from laconic.scene import Scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.verify.reference import Reference
 
 Runner = tuple[Callable[[], None], Callable[[], np.ndarray]]
@@ -70,7 +71,7 @@ def equations_of(task: Task, dtype: Any) -> Equations:
 
 def core_batch(task: Task, real: str, width_bytes: int = 0) -> Batch:
     """The core's lanes at their start; width 1 steps vehicle after vehicle by laconic_run()."""
-    batch = Batch(Vehicle(task.scene.vehicle, real), task.lanes, "rk4", task.step_s, width_bytes=width_bytes)
+    batch = Batch(Vehicle(task.scene.vehicle, real), task.lanes, EXPLICIT, task.step_s, width_bytes=width_bytes)
     batch.voltage_V = task.voltages_V
     for lane, heading in enumerate(task.headings_rad):
         batch.start(lane, heading_rad=heading)
@@ -79,7 +80,7 @@ def core_batch(task: Task, real: str, width_bytes: int = 0) -> Batch:
 
 def core_states(task: Task, batch: Batch) -> np.ndarray:
     """(6 + N, lanes): ν, x, y, heading, wheel angles."""
-    plant = Vehicle(task.scene.vehicle, batch.core.real).plant("rk4", task.step_s)
+    plant = Vehicle(task.scene.vehicle, batch.core.real).plant(EXPLICIT, task.step_s)
     angles = np.empty((task.scene.wheel_count, task.lanes))
     for lane in range(task.lanes):
         plant.restore(batch.state(lane), 0)

@@ -1,4 +1,4 @@
-"""exponential-gauss-8 in 50 digits, written from docs/integrators.md: its increment, and its displacement."""
+"""Collocation at Gauss' points in 50 digits, written from docs/integrators.md: its increment, and its displacement."""
 
 from __future__ import annotations
 

@@ -255,6 +255,8 @@ def taylor_8(m: ExactModel, h: Any, z: Vector, b: Forcing, varies: bool) -> tupl
     return (delta, mean, delta), (moved.real, moved.imag, yaw)
 
 
+REIMPLEMENTED = ("rk4", "taylor-8", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4",
+                 "exponential-gauss-8")
 METHODS: dict[str, Callable[[bool], Callable[..., Increment]]] = {
     "rk4": lambda stiff: rk4,
     "exponential-kahan": lambda stiff: second_order(kahan(stiff)),
