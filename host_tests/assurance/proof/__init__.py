@@ -1,4 +1,4 @@
-"""Frama-C's analyser EVA over calls of public functions of core and node on any input: every number may be any number, an
+"""Frama-C's analyser EVA over calls of public functions of core and node on any input: every number may be any, also an
 infinity or NaN. It follows all inputs at once and reports each place at which it cannot exclude undefined behaviour.
 
     proof [--only ENTRY] [--places]
@@ -75,7 +75,8 @@ def analysed(sources: Path, entry: str) -> str:
 
 def alarms_in(printed: str) -> list[tuple[str, str]]:
     """Place and kind of each alarm once."""
-    return sorted({(f"{Path(file).name}:{line}", " ".join(what.split())) for file, line, what in ALARM.findall(printed)})
+    return sorted({(f"{Path(file).name}:{line}", " ".join(what.split()))
+                   for file, line, what in ALARM.findall(printed)})
 
 
 def alarms(files: list[Path], flags: list[str], entry: str) -> list[tuple[str, str]]:
