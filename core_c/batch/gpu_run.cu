@@ -2,6 +2,7 @@
  * for the device when the program runs (host_tests/laconic/gpu). The batch's memory and what a run leaves in it are those
  * of laconic_batch_run(). One kernel has one method, LACONIC_GPU_METHOD by the numbers of lanes_method with its function
  * LACONIC_GPU_STEP, and leaves lanes of others to theirs. */
+#define LACONIC_IN_CORE /* laconic/build.h */
 #include "laconic/batch.h"
 
 #include "../src/elementary.c"

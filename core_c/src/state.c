@@ -1,6 +1,11 @@
 /* Start values, or the numbers of an outer integrator → state; a motion carried over to a changed vehicle. */
 #include "step_internals.h"
 
+/* The definitions that every program with a state must share (build.h). */
+#define DEFINE_BUILT(name) \
+    void name(void) {}
+LACONIC_BUILT(DEFINE_BUILT)
+
 /*@ requires \valid_read(start) && (why == \null || \valid(why)) && \separated(start, why);
     assigns *why;
     ensures \result == LACONIC_OK ==> (\forall integer k; 0 <= k < 3 ==> \is_finite(start->nu_rad_per_s[k])) &&

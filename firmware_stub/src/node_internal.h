@@ -6,7 +6,7 @@
 #include "laconic_node/protection.h"
 #include "laconic_wire.h"
 
-#define BIT(offset) ((uint32_t)1 << (offset))
+#define BIT_OF(offset) ((uint32_t)1 << (offset))
 
 /* Numbers in a frame, little-endian. */
 /*@ requires \valid_read(data + (0 .. 1));

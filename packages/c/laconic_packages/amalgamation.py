@@ -13,6 +13,7 @@ from laconic_packages.facts import CORE, Facts
 
 INCLUDE = re.compile(r'^#include (?:<(?P<system>\w+\.h)>|"(?:laconic/)?(?P<own>\w+\.h)").*\n', re.MULTILINE)
 MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
+CHECKED = re.compile(r"^#define (laconic_\w+)\(", re.MULTILINE)
 
 HEADER_HEAD = """\
 /* Laconic {version}. {sentence}
@@ -42,8 +43,9 @@ SINGLE_REALS = """\
 
 SOURCE_HEAD = """\
 /* Laconic {version}. How to compile it, and the licence: {name}.h. */
+#define {prefix}_IN_CORE /* no check of a program's definitions here */
 #include "{name}.h"
-
+{checked}
 /* Every operation is rounded once, whatever the options say of fused multiply-add. */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
@@ -68,9 +70,9 @@ def amalgamation(facts: Facts) -> dict[str, str]:
     single = "#define LACONIC_SINGLE_SINGLE /* float, in each place that chooses the scalar type */\n" + renamed(header)
     return {
         "laconic.h": header_head(facts, "laconic", PLAIN_REALS) + header,
-        "laconic.c": source_head(facts, "laconic") + source + SOURCE_FOOT,
+        "laconic.c": source_head(facts, "laconic", header) + source + SOURCE_FOOT,
         "laconic_single.h": header_head(facts, "laconic_single", SINGLE_REALS) + single,
-        "laconic_single.c": source_head(facts, "laconic_single") + renamed(source) + SOURCE_FOOT,
+        "laconic_single.c": source_head(facts, "laconic_single", single) + renamed(source) + SOURCE_FOOT,
     }
 
 
@@ -79,8 +81,9 @@ def header_head(facts: Facts, name: str, reals: str) -> str:
     return HEADER_HEAD.format(version=facts.version, sentence=facts.sentence, name=name, reals=reals, licence=licence)
 
 
-def source_head(facts: Facts, name: str) -> str:
-    return SOURCE_HEAD.format(version=facts.version, name=name)
+def source_head(facts: Facts, name: str, header: str) -> str:
+    """Also where a program has included the header before, in the same file."""
+    return SOURCE_HEAD.format(version=facts.version, name=name, prefix=name.upper(), checked=undefined(CHECKED.findall(header)))
 
 
 def public_headers() -> str:
