@@ -37,8 +37,8 @@ static bool take_code(laconic_gate *gate, const laconic_frame *frame, laconic_fr
         return false;
     }
     uint64_t freshness = gate->freshness;
-    laconic_secoc_status status = laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness, held->data,
-                                                     held->length, frame->data + 1, LACONIC_SECOC_APART);
+    laconic_secoc_status status = laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness,
+                                                     held->data, held->length, frame->data + 1, LACONIC_SECOC_APART);
     if (freshness >> 32 != gate->freshness >> 32) status = LACONIC_SECOC_SPENT;
     if (status == LACONIC_SECOC_OK) gate->freshness = freshness;
     gate->refused[status]++;

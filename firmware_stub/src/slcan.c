@@ -126,7 +126,19 @@ static laconic_slcan_event open_channel(laconic_slcan *slcan, bool listen_only) 
 /* The letters of commands, by number: letters lie far apart, and a table of places would have a word for each between
  * them. */
 static const char letters[] = "OLCSsYZVvNF";
-enum { OPEN, LISTEN, CLOSE, RATE, RATE_BY_REGISTERS, DATA_RATE, TIME_STAMPS, VERSION, OLD_VERSION, SERIAL_NUMBER, FLAGS };
+enum {
+    OPEN,
+    LISTEN,
+    CLOSE,
+    RATE,
+    RATE_BY_REGISTERS,
+    DATA_RATE,
+    TIME_STAMPS,
+    VERSION,
+    OLD_VERSION,
+    SERIAL_NUMBER,
+    FLAGS
+};
 
 static laconic_slcan_event command(laconic_slcan *slcan, size_t length) {
     uint32_t number = 0;

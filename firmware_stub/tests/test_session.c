@@ -38,8 +38,8 @@ static void hello_drops_no_frame_that_waits(void) {
     laconic_protect_plain(LACONIC_WIRE_HELLO, frame.data, 0);
     laconic_node_on_frame(&node, &frame, now_us);
     while (laconic_node_next_frame(&node, &frame)) seen |= BIT_OF(frame.id - LACONIC_WIRE_ID_BASE);
-    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_HEARTBEAT) | BIT_OF(LACONIC_WIRE_IDENTITY) | BIT_OF(LACONIC_WIRE_CHALLENGE),
-                            seen);
+    TEST_ASSERT_EQUAL_HEX32(
+        BIT_OF(LACONIC_WIRE_HEARTBEAT) | BIT_OF(LACONIC_WIRE_IDENTITY) | BIT_OF(LACONIC_WIRE_CHALLENGE), seen);
 }
 
 static void the_nonce_depends_on_seed_and_instant(void) {

@@ -65,9 +65,7 @@ LACONIC_BUILT(LACONIC_DECLARE_BUILT)
 
 #ifndef LACONIC_IN_CORE /* the core's own files, which define the functions */
 #define LACONIC_CALL_BUILT(name) name();
-static inline void laconic_check_build(void) {
-    LACONIC_BUILT(LACONIC_CALL_BUILT)
-}
+static inline void laconic_check_build(void){LACONIC_BUILT(LACONIC_CALL_BUILT)}
 
 #define laconic_vehicle_check(...) (laconic_check_build(), laconic_vehicle_check(__VA_ARGS__))
 #define laconic_motor_fit(...) (laconic_check_build(), laconic_motor_fit(__VA_ARGS__))

@@ -47,10 +47,8 @@
 LACONIC_NODE_BUILT(LACONIC_DECLARE_BUILT)
 
 #define LACONIC_NODE_CALL_BUILT(name) name();
-static inline void laconic_check_node_build(void) {
-    LACONIC_NODE_BUILT(LACONIC_NODE_CALL_BUILT)
-    LACONIC_BUILT(LACONIC_NODE_CALL_BUILT)
-}
+static inline void laconic_check_node_build(void){LACONIC_NODE_BUILT(LACONIC_NODE_CALL_BUILT)
+                                                      LACONIC_BUILT(LACONIC_NODE_CALL_BUILT)}
 
 #define laconic_node_init(...) (laconic_check_node_build(), laconic_node_init(__VA_ARGS__))
 
