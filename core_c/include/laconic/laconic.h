@@ -629,4 +629,7 @@ void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, 
 #ifdef __cplusplus
 }
 #endif
+
+#include "laconic/build.h" /* a program with other definitions than the library's does not link */
+
 #endif
