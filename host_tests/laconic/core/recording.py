@@ -21,10 +21,11 @@ MEMBERS = {  # of laconic_outputs, where they are not called as the signal is
     "no_slip_margin_N": ("reactions", "no_slip_margin_N"),
 }
 FRICTION = "friction"  # the member of laconic_outputs with what only a vehicle with friction shows
+LOADS = ("wheel_load_N", "support_load_N")  # normal_N of the reactions: first those of the wheels
 SENSED = "sensors"  # the member with what sensors show
 OUTPUTS_OF = {FRICTION: "laconic_friction_outputs", SENSED: "laconic_sensor_outputs"}
 WHOLE = ("encoder_count",)
-GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what needs the reactions
+GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N", *LOADS)  # what needs the reactions
 
 
 class Recorder(NotCopied):
@@ -38,7 +39,7 @@ class Recorder(NotCopied):
         core, ffi = plant.core, plant.core.ffi
         self._plant, self.signals = plant, signals
         self._table = np.zeros((rows, len(signals)), core.dtype)
-        self._offsets = np.array([offset_of(core, signal) for signal in signals], np.uint32)
+        self._offsets = np.array([offset_of(core, signal, plant.wheel_count) for signal in signals], np.uint32)
         ground = watched or any(signal.partition("[")[0] in GROUND for signal in signals)
         self._sensors = sensors  # keeps them alive
         self._grip = ffi.new("laconic_grip *") if watched else ffi.NULL
@@ -94,9 +95,13 @@ def needs_sensors(core: Core, signal: str) -> bool:
     return signal.partition("[")[0] in _members(core, "laconic_sensor_outputs")
 
 
-def offset_of(core: Core, signal: str) -> int:
-    """Where a signal stands in laconic_outputs, in bytes; the index counts from 1."""
+def offset_of(core: Core, signal: str, wheel_count: int = 0) -> int:
+    """Where a signal stands in laconic_outputs, in bytes; the index counts from 1. The loads of supports follow those
+    of so many wheels."""
     name, _, index = signal.partition("[")
+    if name in LOADS:
+        first = wheel_count if name == LOADS[1] else 0
+        return core.ffi.offsetof("laconic_outputs", "reactions", "normal_N", first + int(index.rstrip("]")) - 1)
     member = ("input", name) if name in core.input_fields else MEMBERS.get(name, (name,))
     for part in (FRICTION, SENSED):
         if name in _members(core, OUTPUTS_OF[part]):

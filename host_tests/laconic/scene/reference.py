@@ -21,6 +21,8 @@ from laconic.scene.signals import (
     OUTPUT_LENGTHS,
     OUTPUTS_PER_WHEEL,
     PER_WHEEL,
+    SUPPORT_LOAD,
+    WHEEL_LOAD,
 )
 from laconic.scene.table import REQUIRED
 
@@ -56,7 +58,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Signal:
-    """One input or output; items: "" for one number, "[1|2]", or "[i]", one for each wheel."""
+    """One input or output; items: "" for one number, "[1|2]", "[i]", one for each wheel, or "[j]", for each support."""
 
     name: str
     items: str
@@ -154,11 +156,11 @@ def outputs(words: Mapping[str, str]) -> list[Signal]:
     """What `[outputs]` may list."""
     friction = {**dict.fromkeys(FRICTION_PER_WHEEL, -1), **FRICTION_LENGTHS}
     every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), **friction, **OF_IMU,
-             **dict.fromkeys(OF_ENCODERS, -1)}
+             **dict.fromkeys(OF_ENCODERS, -1), WHEEL_LOAD: -1, SUPPORT_LOAD: -2}
     return _signals(every, words)
 
 
 def _signals(lengths: Mapping[str, int], words: Mapping[str, str]) -> list[Signal]:
-    items = {-1: "[i]", 0: "", 2: "[1|2]", 3: "[1|2|3]"}
+    items = {-2: "[j]", -1: "[i]", 0: "", 2: "[1|2]", 3: "[1|2|3]"}
     return [Signal(name, items[length], unit_of(name), re.sub(OF_FMUS, "", words[name]), NEEDED.get(name, ""))
             for name, length in lengths.items()]
