@@ -56,7 +56,7 @@ MOTOR = ("# The file does not tell the motors. With them, voltage_V[i] drives wh
 GEAR = "#   gear_ratio = …"
 DAMPED = ("#   viscous_friction_Nms = …      # the motor_damping_Nms below, divided by gear_ratio²",
           "# [vehicle.motor] takes the place of every motor_gain_Nm_per_V and motor_damping_Nms: take these lines out.")
-LOADS = ("normal_load_N", "support_load_N")  # outputs where friction makes them matter
+LOADS = ("wheel_load_N", "support_load_N")  # outputs where friction makes them matter
 
 
 @dataclass(frozen=True)
