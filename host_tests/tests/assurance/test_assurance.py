@@ -58,7 +58,7 @@ def test_a_mutant_is_the_text_with_one_fault(tmp_path: Path, monkeypatch: pytest
              for each in mutate.mutants_of("text.c")}
     assert found["6:11 relational < to <="] == "".join(TEXT.replace("x < most", "x <= most").split())
     assert found["7:46 swapped arguments"] == "".join(TEXT.replace("bounded(k, x)", "bounded(x, k)").split())
-    assert {"2:24 arithmetic * to /", "3:30 constant 1 to 2", "5:23 dropped + term", "6:9 negated condition",
+    assert {"2:23 arithmetic * to /", "3:30 constant 1 to 2", "5:23 dropped + term", "6:9 negated condition",
             "7:33 dropped statement", "7:35 arithmetic += to -="} <= found.keys()
     assert not any(where.startswith("4:") for where in found)
 
