@@ -17,17 +17,10 @@ function(laconic_strict target)
     laconic_instrument(${target})
 endfunction()
 
-# clang from 18 on counts lines, branches and the conditions of each decision (MC/DC), other compilers lines and
-# branches: not by --coverage, which a file's own options could not take back.
-if(CMAKE_C_COMPILER_ID STREQUAL "Clang" AND CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 18)
-    set(LACONIC_COVERAGE_FLAGS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
-    set(LACONIC_NO_COVERAGE_FLAGS -fno-profile-instr-generate -fno-coverage-mapping -fno-coverage-mcdc)
-    set(LACONIC_COVERAGE_LINK_FLAGS -fprofile-instr-generate)
-else()
-    set(LACONIC_COVERAGE_FLAGS -fprofile-arcs -ftest-coverage)
-    set(LACONIC_NO_COVERAGE_FLAGS -fno-profile-arcs -fno-test-coverage)
-    set(LACONIC_COVERAGE_LINK_FLAGS --coverage)
-endif()
+# Lines and branches, which gcovr counts: not by --coverage, which a file's own options could not take back.
+set(LACONIC_COVERAGE_FLAGS -fprofile-arcs -ftest-coverage)
+set(LACONIC_NO_COVERAGE_FLAGS -fno-profile-arcs -fno-test-coverage)
+set(LACONIC_COVERAGE_LINK_FLAGS --coverage)
 
 # Without it clang takes an array at the end of a struct for one of any length, whose bounds its sanitizer leaves alone.
 include(CheckCCompilerFlag)

@@ -57,8 +57,4 @@ function(laconic_unity_test name)
     if(LACONIC_SANITIZE)
         set_tests_properties(${name} PROPERTIES TIMEOUT 300)
     endif()
-    if(LACONIC_COVERAGE) # what clang's tests leave for cmake/coverage_table.py
-        set_tests_properties(${name} PROPERTIES
-            ENVIRONMENT "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/profiles/${name}.profraw")
-    endif()
 endfunction()

@@ -64,7 +64,6 @@ static bool is_left_out(uint8_t field) {
     const bool of_drives = field >= LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL && field <= LACONIC_DRIVES_FIELD_LAST;
     const bool of_sensors = field >= LACONIC_SENSOR_FIELD_IMU_X && field < LACONIC_SENSOR_FIELD_COUNT;
     const bool of_friction = field >= LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT && field < LACONIC_FIELD_COUNT;
-    /* a condition cannot be reached: what a build leaves out is a constant, and the tests' build leaves out nothing */
     return of_motor || (!LACONIC_WITH_OWN_WHEELS && of_wheel) || (!LACONIC_WITH_SLOPE && of_slope) ||
            (!LACONIC_WITH_FRICTION && of_friction && !of_slope) || (!LACONIC_NODE_WITH_DRIVES && of_drives) ||
            (!LACONIC_NODE_WITH_SENSORS && of_sensors);
@@ -79,13 +78,11 @@ static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_
 
 /* Joins the 32-bit halves of a number. False: the upper half of a double is still to come, or the frame is refused. */
 static bool assemble(laconic_loader *loader, const struct laconic_dbc_parameter_t *frame, laconic_real *value) {
-    if (sizeof(laconic_real) == sizeof(uint32_t)) {
-        /* cannot be reached in double: a number has two halves */
+    if (sizeof(laconic_real) == sizeof(uint32_t)) { /* single: a number has no second half */
         if (frame->upper_half) refuse(loader, LACONIC_WIRE_STATUS_OUT_OF_RANGE, frame->field, frame->item);
         memcpy(value, &frame->value, sizeof(uint32_t));
         return !frame->upper_half;
     }
-    /* cannot be reached in single: a number has no second half */
     if (!frame->upper_half) {
         if (loader->half_field != 0) /* the upper half of the double before did not come */
             refuse(loader, LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, loader->half_field, loader->half_item);
@@ -196,7 +193,6 @@ uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count,
     *field = loader->field;
     *item = loader->item;
     if (loader->status != 0) return loader->status;
-    /* cannot be reached in single: a number has no second half */
     if (loader->half_field != 0) {
         *field = loader->half_field;
         *item = loader->half_item;

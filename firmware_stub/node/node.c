@@ -69,7 +69,6 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
 static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
     const uint8_t key = laconic_wire[offset].key;
     if (key == LACONIC_WIRE_KEY_SESSION) return laconic_node_takes_command(node, offset, data);
-    /* a condition cannot be reached: the second is a constant of the build */
     return key != LACONIC_WIRE_KEY_RUN || LACONIC_NODE_DRIVES_ONLY || laconic_node_takes_motion(node, offset, data);
 }
 

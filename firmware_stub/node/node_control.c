@@ -218,9 +218,7 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
         (uint8_t)((data[3] & 0x7FU) | ((uint32_t)data[4] << 3 & LACONIC_RAW_HELD_TORQUE)); /* its bit 4 */
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
-        /* a condition cannot be reached: the last decides nothing, as the tests' build leaves out nothing */
     } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !speaks_fd(node)) ||
-               /* cannot be reached: the tests' build leaves out nothing */
                ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & (TAKES_LEFT_OUT | ESTIMATE_LEFT_OUT))) !=
                    0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;

@@ -184,7 +184,6 @@ static void pack_state_fd(const laconic_node *node, uint8_t *data) {
     put32(data + 20, (uint32_t)SCALED(pose.x_m, STATE_FD_X, &over));
     put32(data + 24, (uint32_t)SCALED(pose.y_m, STATE_FD_Y, &over));
     put32(data + 28, (uint32_t)SCALED(pose.heading_wrapped_rad, STATE_FD_HEADING, &over));
-    /* cannot be reached: the tests' build has 16 wheels at most */
     for (int32_t i = 0; i < node->plant.model.wheel_count && i < 16; i++)
         put16(data + 32 + 2 * i, (uint32_t)SCALED(speed[i], STATE_FD_WHEEL_SPEED_1, &over));
     data[3] = over;

@@ -59,7 +59,6 @@ void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us)
 
 /* By how many counts the frame is ahead of the last one of its kind; −1: its protection is wrong. */
 static int ahead_of_last(const laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t key) {
-    /* a condition cannot be reached: the first is a constant of the build */
     const uint8_t mask = LACONIC_NODE_CAN_FD && laconic_wire[offset].fd ? 255U : 15U;
     const uint32_t last = node->session.count[offset];
     const uint32_t ahead = (laconic_counter_of(offset, data) - last) & mask;
@@ -120,6 +119,5 @@ bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t
         return refuse(node, ahead);
     }
     for (int k = 1; k < ahead; k++) count(&node->counters.lost);
-    return accept(node, offset, ahead) && /* cannot be reached: its other side, since a frame is accepted in any case */
-           was_armed && ahead == 1;
+    return accept(node, offset, ahead) && was_armed && ahead == 1;
 }

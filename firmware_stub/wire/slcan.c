@@ -56,8 +56,7 @@ static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
     laconic_frame read = {0};
     uint32_t dlc;
     uint32_t byte;
-    /* cannot be reached: the caller has asked the same before */
-    if (!kind_of(line[0], &read)) return false;
+    if (!kind_of(line[0], &read)) return false; /* the caller has asked the same before */
     const size_t id_digits = read.extended ? 8 : 3;
     if (length < 1U + id_digits + 1U) return false;
     if (!number(line + 1, id_digits, &read.id) || !number(line + 1 + id_digits, 1, &dlc)) return false;

@@ -98,7 +98,7 @@ fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
     return FMU_OK;
 }
 
-/* cannot be reached: a controller has no warnings */
+/* A controller has no warnings. */
 void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
     (void)instance;
     (void)accepted;
@@ -111,7 +111,7 @@ void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
     (void)motion;
 }
 
-/* cannot be reached: a controller refuses no step */
+/* A controller refuses no step. */
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
     (void)model;
     (void)motion;
@@ -163,7 +163,7 @@ void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
         tangent->error_rad[i] = instance->model.error_rate_rad_per_s[i];
 }
 
-/* cannot be reached: FMU_MODEL_TAKES_SLOPES is false, inputs are held */
+/* FMU_MODEL_TAKES_SLOPES is false: inputs are held. */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope) {
     (void)model;
     (void)tangent_offset;

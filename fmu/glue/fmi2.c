@@ -234,7 +234,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
     ALLOW(c, FMU_CALL_CANCEL_STEP);
-    return fmi2OK; /* cannot be reached: never allowed, since steps are not asynchronous */
+    return fmi2OK; /* never allowed, since steps are not asynchronous */
 }
 
 static fmi2Status no_status(fmi2Component c) {

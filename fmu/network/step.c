@@ -92,7 +92,7 @@ uint32_t fmu_model_state_count(const fmu_model *model) {
     return 0;
 }
 
-/* cannot be reached: no variable is a continuous state */
+/* No variable is a continuous state. */
 void fmu_model_before_set_state(fmu_instance *instance) { (void)instance; }
 
 #define ABSENT_DERIVATIVES(name) \

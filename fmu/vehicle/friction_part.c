@@ -43,7 +43,7 @@ laconic_status fmu_friction_prepare(const laconic_vehicle *vehicle, laconic_cont
         return laconic_contact_prepare(contact, vehicle, why);
     bare = without_motors(vehicle);
     const laconic_status status = laconic_prepare(rolling, &bare, why);
-    /* cannot be reached: a refusal, since the vehicle with its motors was prepared before */
+    /* no refusal is expected: the vehicle with its motors was prepared before */
     return status == LACONIC_OK ? laconic_contact_prepare(contact, &bare, why) : status;
 }
 

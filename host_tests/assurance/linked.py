@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
+import subprocess
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -95,3 +98,12 @@ def affected(file: str) -> list[Entry]:
     path = (ROOT / file).resolve()
     return [entry for entry in all_entries() if path in includes(
         entry.source.resolve(), tuple(word.removeprefix("-I") for word in entry.flags("-I")))]
+
+
+def ran(program: Path, limit_s: float, **environment: str) -> bool:
+    """Whether a test passes within the time."""
+    with suppress(subprocess.TimeoutExpired):
+        done = subprocess.run([str(program)], env={**os.environ, **environment}, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=limit_s, check=False)
+        return done.returncode == 0
+    return False

@@ -18,16 +18,17 @@ import subprocess
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from zlib import crc32
 
 from assurance.common import CORES, PARTS, ROOT, Clock, Entry, Unusable, build, called, work
-from assurance.linked import affected, links, objects_of, programs
+from assurance.linked import affected, links, objects_of, programs, ran
 
 KNOWN = Path(__file__).with_name("survivors.txt")  # at most 20 lines: FILE FUNCTION OPERATOR # reason
 LEFT_OUT = {"tests", "bench", "ports", "cdef", "cortex_m", "batch", "library"}
-USUAL_S, FACTOR = 1.0, 8.0  # how long a program may run: so many times its usual time, and so long
+USUAL_S, FACTOR = 1.0, 8.0  # a program may run for its usual time so many times, and so long
 
 LEXER = re.compile(r"""(?P<space>\s+|/\*.*?\*/|//[^\n]*)|(?P<directive>^[ \t]*\#(?:\\\n|/\*.*?\*/|[^\n])*)|
     (?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')|(?P<number>\.?\d(?:[eEpP][+-]|[\w.])*)|(?P<name>[A-Za-z_]\w*)|
@@ -295,8 +296,7 @@ class Mutant:
     def text(self) -> str:
         """The region with the fault, in one line."""
         first, end, other, _ = self.edit
-        tokens = self.region.tokens
-        return f"{joined(tokens[:first])} {other} {joined(tokens[end:])}"
+        return f"{joined(self.region.tokens[:first])} {other} {joined(self.region.tokens[end:])}"
 
     def alone(self, text: str) -> str:
         """The whole file with the fault."""
@@ -339,9 +339,9 @@ DECLARED = "extern int laconic_mutant; extern unsigned char laconic_reached[1 <<
 
 def switched(text: str, mutants: list[Mutant]) -> tuple[str, dict[int, list[Mutant]]]:
     """The file with these mutants behind switches, and the mutants of each line that has some."""
-    by_region: dict[int, list[Mutant]] = defaultdict(list)
+    by_region = defaultdict[int, list[Mutant]](list)
     for mutant in mutants:
-        by_region[id(mutant.region)].append(mutant)
+        by_region[mutant.region.mark].append(mutant)
     parts, lines, at, line = [DECLARED], defaultdict[int, list[Mutant]](list), 0, 2
     for own in by_region.values():
         region = own[0].region
@@ -388,7 +388,7 @@ class Bench:
         words = [word for word in entry.command if not word.startswith("-W")]
         for part in PARTS.values():
             words = [word.replace(f"{ROOT}/{part}", f"{self.folder}/{part}") for word in words]
-        out = self.folder / f"{abs(hash(entry.output))}.{suffix}"
+        out = self.folder / f"{crc32(str(entry.output).encode()):08x}.{suffix}"
         words[words.index("-o") + 1] = str(out)
         done = subprocess.run([*words, *own], cwd=build(), capture_output=True, text=True, check=False)
         return out, done.stderr if done.returncode else ""
@@ -408,14 +408,12 @@ class Bench:
 
     def link(self, program: Path) -> Path | None:
         """A test program with the faults; None where it cannot be linked."""
-        link = links()[program]
-        out = self.folder / program.name
+        link, out = links()[program], self.folder / program.name
         words = [str(self._replaced((link.folder / word).resolve())) if word.endswith((".o", ".a")) else word
                  for word in link.words]
         words[words.index("-o") + 1] = str(out)
-        done = subprocess.run([*words, str(self.folder / "helper.o")], cwd=link.folder, capture_output=True,
-                              check=False)
-        return out if done.returncode == 0 else None
+        words.append(str(self.folder / "helper.o"))
+        return out if not subprocess.run(words, cwd=link.folder, capture_output=True, check=False).returncode else None
 
     def _replaced(self, path: Path) -> Path:
         """An object of this text, or an archive with some; else what the build has."""
@@ -427,15 +425,6 @@ class Bench:
             self.made[path].unlink(missing_ok=True)
             called(["ar", "qcsT", self.made[path], *inputs])
         return self.made.get(path, path)
-
-
-def ran(program: Path, limit_s: float, **environment: str) -> bool:
-    """Whether a test passes within the time."""
-    with suppress(subprocess.TimeoutExpired):
-        done = subprocess.run([str(program)], env={**os.environ, **environment}, stdin=subprocess.DEVNULL,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=limit_s, check=False)
-        return done.returncode == 0
-    return False
 
 
 @dataclass

@@ -128,9 +128,8 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 
 /* -------------------------------------------------------------------------------- vehicle -- */
 
-/* OK iff every number of the vehicle is usable; else the first that is not. O(N). No number but the two counts has to
- * be checked for the code to be defined: that is proved for every number (docs/proof.md). What the check adds is that
- * results are finite. */
+/* OK iff every number of the vehicle is usable; else the first that is not. O(N). Only the two counts have to be checked
+ * for accesses to memory to be defined (docs/assurance.md). The check ensures in addition that results are finite. */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to

@@ -4,9 +4,8 @@
 
 /* -------------------------------------------------------------------- the step that is taken -- */
 
-/* NULL: the derivation is of other methods. */
+/* NULL: the derivation is of other methods. A list that is not full ends with NULL. */
 static const laconic_derived_method *derived(const laconic_derivation *derivation, const laconic_method *chosen) {
-    /* cannot be reached: every list ends with NULL */
     for (int i = 0; i < LACONIC_DERIVED_METHODS && derivation->method[i] != NULL; i++)
         if (derivation->method[i]->chosen == chosen) return derivation->method[i];
     return NULL;

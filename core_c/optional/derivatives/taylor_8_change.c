@@ -106,7 +106,7 @@ static void at_every_node(nodes *at, const taylor_trace *t, const laconic_model 
 static real sum_of_nodes(const lane a[NODE_GROUPS]) {
     lane sum = a[0];
     real total;
-    /* cannot be reached in single: there is one group */
+    /* in single there is one group */
     for (int g = 1; g < NODE_GROUPS; g++) sum = sum + a[g];
     total = lane_number(sum, 0);
     for (int k = 1; k < LANES; k++) total += lane_number(sum, k);

@@ -97,7 +97,7 @@ INLINE increment flow_base(const laconic_model *m, const laconic_integrator *int
     const laconic_decay *half = &integrator->decay[level + 1];
     const parabola *first = b, *second = b;
     parabola early, late;
-    if (!(LACONIC_WITH_DAMPING || LACONIC_WITH_FORCING)) /* cannot be reached: of a core without damping and forcing */
+    if (!(LACONIC_WITH_DAMPING || LACONIC_WITH_FORCING))
         return increment_of(&integrator->decay[level], zeta, free_flow(m, half_step, zeta), b);
     if (b->varies) {
         split(&early, &late, b);

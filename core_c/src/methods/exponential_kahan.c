@@ -93,7 +93,7 @@ INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *in
 
 /* Smaller where a program has a single base step: the second-order method where b never varies. */
 INLINE increment only_kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                                 const parabola *b) { /* cannot be reached: of a core without samples */
+                                 const parabola *b) {
     return kahan_increment(m, integrator, level, zeta, b, follow_inlined);
 }
 

@@ -120,7 +120,6 @@ typedef struct contributions {
 static contributions of_damping(const laconic_model *m) {
     contributions c = {R(0), {R(0)}};
     if (!LACONIC_WITH_OWN_WHEELS) {
-        /* cannot be reached: of a core without own wheels */
         c.largest = m->wheel_count > 0 ? m->motor_damping_Nms[0] : R(0);
         return c;
     }

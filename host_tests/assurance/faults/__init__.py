@@ -37,12 +37,13 @@ def program(real: str) -> Path:
     return out
 
 
-def memory(sample: int, seed: int) -> bool:
+def memory(sample: int, seed: int, reals: tuple[str, ...] = REALS, choices: tuple[str, ...] = CHECKS) -> bool:
     """So many bits of each scalar type, without checks, with sums and ranges, and with all."""
     sound = True
-    for real in REALS:
-        for checks in CHECKS:
-            found, made = Counter[str](), program(real)
+    for real in reals:
+        made = program(real)
+        for checks in choices:
+            found = Counter[str]()
             bits = int(called([made, "bits"]).split()[1])
             printed = called([made, "memory", "0", str(min(sample, bits)), str(seed), checks], 1e5)
             for _, outcome, count, *_ in (line.split("|") for line in printed.splitlines()):
@@ -55,10 +56,10 @@ def memory(sample: int, seed: int) -> bool:
     return sound
 
 
-def session(kind: str) -> bool:
+def session(kind: str, reals: tuple[str, ...] = REALS) -> bool:
     """Power or clocks, whole; the program fails where a figure is not as it must be."""
     sound = True
-    for real in REALS:
+    for real in reals:
         done = subprocess.run([program(real), kind], capture_output=True, text=True, check=False)
         for line in done.stdout.splitlines():
             print(f"{kind}, {real}, {line.replace('|', ', ')}")

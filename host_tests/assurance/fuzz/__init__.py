@@ -1,9 +1,9 @@
 """Fuzzing: whatever reads bytes, frames, calls, vehicles and files, under sanitizers for addresses and undefined
 behaviour. By libFuzzer where clang has it; else the seeds alone are tried.
 
-    fuzz [--only TARGET] [--minutes M] [--runs N] [--seed S]
+    fuzz [--only TARGET] [--seconds S] [--runs N] [--seed K]
 
-Each target runs M minutes, or N inputs, the same ones for the same seed. A fault is printed with the file that shows
+Each target runs S seconds, or N inputs, the same ones for the same seed. A fault is printed with the file that shows
 it, below the build tree."""
 
 from __future__ import annotations
@@ -95,13 +95,13 @@ def program(name: str) -> Path:
     return out
 
 
-def search(name: str, minutes: float, runs: int | None, seed: int) -> bool:
+def search(name: str, seconds: float, runs: int | None, seed: int) -> bool:
     """Runs a target; prints what it found."""
     target, made, folder = TARGETS[name], program(name), work("fuzz") / "inputs" / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     seeds.write(name, target.most_bytes, folder)
-    limit = [f"-runs={runs}"] if runs is not None else [f"-max_total_time={max(1, round(60.0 * minutes))}"]
+    limit = [f"-runs={runs}"] if runs is not None else [f"-max_total_time={max(1, round(seconds))}"]
     options = [f"-seed={seed}", *limit, "-reload=0", "-timeout=20", f"-max_len={target.most_bytes}",
                "-rss_limit_mb=1024", f"-artifact_prefix={folder.parent}/{name}-"]
     has_feedback = b"libFuzzer" in made.read_bytes()
@@ -120,7 +120,7 @@ def search(name: str, minutes: float, runs: int | None, seed: int) -> bool:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--only", metavar="TARGET", help="one of " + ", ".join((*TARGETS, "files")))
-    parser.add_argument("--minutes", type=float, default=1.0, help="for each target, 1 by default")
+    parser.add_argument("--seconds", type=float, default=60.0, help="for each target, 60 by default")
     parser.add_argument("--runs", type=int, metavar="N", help="so many inputs instead")
     parser.add_argument("--seed", type=int, default=1)
 
@@ -135,7 +135,7 @@ def run(options: argparse.Namespace) -> bool:
         if name == "files":
             from assurance.fuzz import files
 
-            found &= files.search(options.minutes, options.runs, options.seed)
+            found &= files.search(options.seconds, options.runs, options.seed)
         else:
-            found &= search(name, options.minutes, options.runs, options.seed)
+            found &= search(name, options.seconds, options.runs, options.seed)
     return found

@@ -266,12 +266,12 @@ def spoil(reader: Reader, seed: int, clock: Clock, most: float) -> tuple[int, in
     return done, len(lines.seen), "", ""
 
 
-def search(minutes: float, runs: int | None, seed: int) -> bool:
+def search(seconds: float, runs: int | None, seed: int) -> bool:
     """Each reader so long, or so many files; prints what was found."""
     found = True
     for name, reader in READERS.items():
         most = float("inf") if runs is None else float(runs)
-        done, lines, complaint, text = spoil(reader, seed, Clock(minutes if runs is None else 1e6), most)
+        done, lines, complaint, text = spoil(reader, seed, Clock(seconds / 60.0 if runs is None else 1e6), most)
         print(f"{name}: {done} files, {lines} lines, {complaint or 'nothing found'}", flush=True)
         if complaint:
             kept = work("fuzz") / f"spoilt{reader.good[0].suffix}"
