@@ -318,7 +318,8 @@ static void a_number_of_the_filter_and_windows_of_an_estimate(void) {
     expect(EITHER(0xba3258e7c1dfbb5aU, 0xb3d9f3490030540aU));
 }
 
-/* Messages of each status for each field, in room that is ample and in room that ends early. */
+/* Messages of each status for each field, in room that is ample and in room that ends early. Of the one that names all
+ * methods test_methods.c has the text. */
 static void every_line_of_text(void) {
     begin();
     for (int field = -1; field < 130; field++) {
@@ -333,7 +334,7 @@ static void every_line_of_text(void) {
     for (int status = -1; status <= LACONIC_STATUS_COUNT; status++) {
         take_text(laconic_status_name((laconic_status)status));
         take_text(laconic_arithmetic_text((laconic_arithmetic)status));
-        for (int n = 0; n < WRONGS; n++) {
+        for (int n = 0; n < WRONGS && status != LACONIC_METHOD_UNKNOWN; n++) {
             const laconic_refusal told = {(laconic_status)status, (laconic_field)(3 * n), n, wrong[n],
                                           REAL(1.23456e-9 * n * n * n)};
             char text[600] = "";
@@ -344,7 +345,7 @@ static void every_line_of_text(void) {
             TAKE(lengths);
         }
     }
-    expect(EITHER(0x4bac28654c1f368fU, 0xe3a09ea58e768c56U));
+    expect(EITHER(0x95cf220c62549e42U, 0x668d5891aae484bdU));
 }
 
 static void lines_of_text_with_numbers_of_every_size(void) {
