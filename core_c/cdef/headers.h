@@ -1,4 +1,5 @@
-/* The headers whose functions Python calls. */
+/* The headers whose functions Python calls, without what checks a program's definitions (build.h). */
+#define LACONIC_IN_CORE
 #include "laconic/laconic.h"
 
 #include "laconic/articulated.h"

@@ -226,6 +226,7 @@ static void see_model(laconic_integrity *it, laconic_node *node) {
 
 void laconic_integrity_begin(laconic_integrity *integrity, const laconic_node *node, const laconic_node_config *config,
                              const laconic_integrity_limits *limits, uint8_t checks) {
+    laconic_check_node_build();
     memset(integrity, 0, sizeof *integrity);
     integrity->config = config;
     integrity->limits = *limits;

@@ -11,7 +11,13 @@ static bool is_usable(const laconic_node_config *config) {
     return config->id_base % LACONIC_NODE_ID_STRIDE == 0 && config->id_base <= 0x7E0U && config->method != NULL;
 }
 
-bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us) {
+/* The definitions that every port must share (build.h). */
+#define DEFINE_BUILT(name) \
+    void name(void) {}
+LACONIC_NODE_BUILT(DEFINE_BUILT)
+
+bool(laconic_node_init)(laconic_node *node, const laconic_node_config *config, uint32_t now_us) {
+    LACONIC_WIRE_BUILT();
     if (!is_usable(config)) return false;
     memset(node, 0, sizeof *node);
     node->config = *config;
@@ -91,8 +97,8 @@ static bool is_silent(const laconic_node *node) {
 void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
     if ((int32_t)(now_us - node->heartbeat_us) >= (int32_t)LACONIC_NODE_HEARTBEAT_US) {
         node->heartbeat_us += LACONIC_NODE_HEARTBEAT_US;
-        if (!is_silent(node)) node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
-        if (node->send & LACONIC_NODE_SEND_COUNTERS) node->pending |= BIT(LACONIC_WIRE_COUNTERS);
+        if (!is_silent(node)) node->pending |= BIT_OF(LACONIC_WIRE_HEARTBEAT);
+        if (node->send & LACONIC_NODE_SEND_COUNTERS) node->pending |= BIT_OF(LACONIC_WIRE_COUNTERS);
 #if LACONIC_NODE_WITH_ESTIMATE
         if (estimates(node)) laconic_node_publish_estimate(node);
 #endif
@@ -143,7 +149,7 @@ static bool frame_of_drives(laconic_node *node, laconic_frame *frame) {
 bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
     uint8_t offset = LACONIC_WIRE_RESULT;
     if (node->pending == 0) return frame_of_drives(node, frame);
-    while ((node->pending & BIT(offset)) == 0) offset++;
+    while ((node->pending & BIT_OF(offset)) == 0) offset++;
     const laconic_wire_row *row = &laconic_wire[offset];
     frame->id = (uint32_t)node->config.id_base + offset;
     frame->length = row->length;
@@ -153,7 +159,7 @@ bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
     frame->bit_rate_switch = frame->fd;
     laconic_node_pack(node, offset, frame->data);
     laconic_protect_plain(offset, frame->data, ++node->sent[offset - LACONIC_WIRE_NODE_FIRST]);
-    if (!has_more(node, offset)) node->pending &= ~BIT(offset);
+    if (!has_more(node, offset)) node->pending &= ~BIT_OF(offset);
     return true;
 }
 

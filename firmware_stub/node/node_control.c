@@ -6,8 +6,8 @@
 #include <string.h>
 
 void laconic_node_answer_again(laconic_node *node, uint8_t offset) {
-    node->answers_due = (uint16_t)(node->answers_due | BIT(offset));
-    node->pending |= BIT(LACONIC_WIRE_RESULT);
+    node->answers_due = (uint16_t)(node->answers_due | BIT_OF(offset));
+    node->pending |= BIT_OF(LACONIC_WIRE_RESULT);
 }
 
 void laconic_node_answer(laconic_node *node, uint8_t offset, laconic_node_result answer) {

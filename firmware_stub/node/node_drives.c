@@ -74,7 +74,7 @@ static laconic_status step(laconic_node *node, uint32_t now_us, laconic_refusal 
 /* Whoever reads the torques must miss no step, or his own steps are others from there on: the next one waits until the
  * raw numbers of the last have been sent. */
 static bool is_read(const laconic_node *node) {
-    const uint32_t raw = BIT(LACONIC_WIRE_RAW_OUTPUT) | BIT(LACONIC_WIRE_RAW_OUTPUT_FD);
+    const uint32_t raw = BIT_OF(LACONIC_WIRE_RAW_OUTPUT) | BIT_OF(LACONIC_WIRE_RAW_OUTPUT_FD);
     return (node->raw_output.send & LACONIC_RAW_HELD_TORQUE) == 0 || (node->pending & raw) == 0;
 }
 

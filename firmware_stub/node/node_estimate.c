@@ -31,7 +31,7 @@ void laconic_node_watch_taken(laconic_node *node, const laconic_state *before) {
 void laconic_node_publish_estimate(laconic_node *node) {
     laconic_estimate_read(&node->estimated, &node->estimate, &node->plant);
     node->estimate_page = 0;
-    node->pending |= BIT(LACONIC_WIRE_ERROR_ESTIMATE);
+    node->pending |= BIT_OF(LACONIC_WIRE_ERROR_ESTIMATE);
 }
 
 #endif

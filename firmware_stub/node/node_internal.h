@@ -6,7 +6,7 @@
 #include "laconic_node/protection.h"
 #include "laconic_wire.h"
 
-#define BIT(offset) ((uint32_t)1 << (offset))
+#define BIT_OF(offset) ((uint32_t)1 << (offset))
 
 /* Numbers in a frame, little-endian. */
 static inline uint16_t word16(const uint8_t *data) { return (uint16_t)(data[0] | data[1] << 8); }
@@ -61,7 +61,8 @@ static inline bool may_start(const laconic_node *node) {
 #define TAKES_LEFT_OUT \
     ((LACONIC_WITH_VOLTAGE ? 0U : LACONIC_RAW_VOLTAGE) | (LACONIC_WITH_AXLE_TORQUE ? 0U : LACONIC_RAW_AXLE_TORQUE) | \
      (LACONIC_WITH_BODY_WRENCH ? 0U : LACONIC_RAW_BODY_WRENCH) | \
-     (LACONIC_WITH_WORLD_FORCE ? 0U : LACONIC_RAW_WORLD_FORCE) | (LACONIC_WITH_SAMPLED_INPUT ? 0U : LACONIC_RAW_SAMPLED))
+     (LACONIC_WITH_WORLD_FORCE ? 0U : LACONIC_RAW_WORLD_FORCE) | \
+     (LACONIC_WITH_SAMPLED_INPUT ? 0U : LACONIC_RAW_SAMPLED))
 
 /* Whether frames of CAN FD may be sent. */
 static inline bool speaks_fd(const laconic_node *node) { return LACONIC_NODE_CAN_FD && node->config.can_fd; }

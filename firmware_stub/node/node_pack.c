@@ -20,7 +20,7 @@ static int32_t scaled(laconic_real value, int32_t per_unit, int32_t largest, uin
 
 static void pack_result(const laconic_node *node, uint8_t *data) {
     uint8_t offset = 0;
-    while ((node->answers_due & BIT(offset)) == 0) offset++;
+    while ((node->answers_due & BIT_OF(offset)) == 0) offset++;
     const laconic_node_result *result = &node->answer[offset];
     data[1] = (uint8_t)(result->request << 4);
     data[2] = result->command;

@@ -10,11 +10,11 @@ void laconic_node_clear_inputs(laconic_node *node) {
 
 /* Makes the frames that SELECT has chosen due, with outputs of the present state. */
 void laconic_node_publish(laconic_node *node) {
-    if (node->send & LACONIC_NODE_SEND_NU) node->pending |= BIT(LACONIC_WIRE_NU);
-    if (node->send & LACONIC_NODE_SEND_POSE) node->pending |= BIT(LACONIC_WIRE_POSE);
+    if (node->send & LACONIC_NODE_SEND_NU) node->pending |= BIT_OF(LACONIC_WIRE_NU);
+    if (node->send & LACONIC_NODE_SEND_POSE) node->pending |= BIT_OF(LACONIC_WIRE_POSE);
     if (node->send & LACONIC_NODE_SEND_WHEEL_SPEED && node->plant.model.wheel_count > 0)
-        node->pending |= BIT(LACONIC_WIRE_WHEEL_SPEED);
-    if (node->send & LACONIC_NODE_SEND_STATE_FD) node->pending |= BIT(LACONIC_WIRE_STATE_FD);
+        node->pending |= BIT_OF(LACONIC_WIRE_WHEEL_SPEED);
+    if (node->send & LACONIC_NODE_SEND_STATE_FD) node->pending |= BIT_OF(LACONIC_WIRE_STATE_FD);
     node->wheel_group = 0;
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensor_outputs sensed;
@@ -24,7 +24,7 @@ void laconic_node_publish(laconic_node *node) {
     laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], NULL);
 #endif
     if (node->raw_output.size > 0)
-        node->pending |= node->raw_fd ? BIT(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT(LACONIC_WIRE_RAW_OUTPUT);
+        node->pending |= node->raw_fd ? BIT_OF(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT_OF(LACONIC_WIRE_RAW_OUTPUT);
 }
 
 void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t request) {

@@ -26,7 +26,7 @@ void laconic_node_start_sensors(laconic_node *node, const laconic_sensor_setting
     node->has_sensors = is_set(settings);
     (void)laconic_sensors_start(&node->sensors, settings, &node->plant, NULL);
     node->encoder_wheel = laconic_node_encoder_from(node, node->encoder_wheel);
-    if (node->encoder_wheel >= LACONIC_MAX_WHEELS) node->pending &= ~BIT(LACONIC_WIRE_ENCODER);
+    if (node->encoder_wheel >= LACONIC_MAX_WHEELS) node->pending &= ~BIT_OF(LACONIC_WIRE_ENCODER);
 }
 
 void laconic_node_publish_sensors(laconic_node *node, laconic_sensor_outputs *sensed) {
@@ -34,10 +34,10 @@ void laconic_node_publish_sensors(laconic_node *node, laconic_sensor_outputs *se
     node->angle_group = 0;
     node->encoder_wheel = laconic_node_encoder_from(node, 0);
     if (node->send & LACONIC_NODE_SEND_WHEEL_ANGLE && node->plant.model.wheel_count > 0)
-        node->pending |= BIT(LACONIC_WIRE_WHEEL_ANGLE);
-    if (node->send & LACONIC_NODE_SEND_IMU) node->pending |= BIT(LACONIC_WIRE_IMU);
+        node->pending |= BIT_OF(LACONIC_WIRE_WHEEL_ANGLE);
+    if (node->send & LACONIC_NODE_SEND_IMU) node->pending |= BIT_OF(LACONIC_WIRE_IMU);
     if (node->send & LACONIC_NODE_SEND_ENCODER && node->encoder_wheel < LACONIC_MAX_WHEELS)
-        node->pending |= BIT(LACONIC_WIRE_ENCODER);
+        node->pending |= BIT_OF(LACONIC_WIRE_ENCODER);
     if (node->raw_output.send & RAW_OF_SENSORS)
         laconic_sensors_read(sensed, &node->sensors, &node->plant, &node->input[0]);
 }

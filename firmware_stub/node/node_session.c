@@ -15,7 +15,7 @@ void laconic_node_hello(laconic_node *node, const uint8_t *data, uint32_t now_us
     if (!session->has_nonce) session->nonce = laconic_mix(node->config.nonce_seed, now_us);
     session->has_nonce = true;
     session->request = laconic_counter_of(LACONIC_WIRE_HELLO, data);
-    node->pending |= BIT(LACONIC_WIRE_IDENTITY) | BIT(LACONIC_WIRE_CHALLENGE);
+    node->pending |= BIT_OF(LACONIC_WIRE_IDENTITY) | BIT_OF(LACONIC_WIRE_CHALLENGE);
 }
 
 static bool answers(const uint8_t *data, uint32_t nonce) {
@@ -106,7 +106,7 @@ bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t
     laconic_node_session *session = &node->session;
     const int most = node->state == LACONIC_WIRE_STATE_FREE_RUN ? laconic_wire[offset].max_delta : 1;
     const int ahead = ahead_of_last(node, offset, data, session->run_key);
-    const uint32_t bit = BIT(offset);
+    const uint32_t bit = BIT_OF(offset);
     const bool was_armed = (session->armed & bit) != 0;
     if (ahead == 0) { /* a CAN bus may transmit a frame twice */
         count(&node->counters.repeated);

@@ -7,7 +7,9 @@
 
 #define CODE_BYTES 8U
 
-void laconic_gate_init(laconic_gate *gate, uint32_t id_base, const uint8_t key[LACONIC_AES_BYTES]) {
+void LACONIC_GATE_BUILT(void) {}
+
+void(laconic_gate_init)(laconic_gate *gate, uint32_t id_base, const uint8_t key[LACONIC_AES_BYTES]) {
     memset(gate, 0, sizeof *gate);
     gate->id_base = id_base;
     laconic_cmac_key_of(&gate->key, key);
@@ -35,8 +37,8 @@ static bool take_code(laconic_gate *gate, const laconic_frame *frame, laconic_fr
         return false;
     }
     uint64_t freshness = gate->freshness;
-    laconic_secoc_status status = laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness, held->data,
-                                                     held->length, frame->data + 1, LACONIC_SECOC_APART);
+    laconic_secoc_status status = laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness,
+                                                     held->data, held->length, frame->data + 1, LACONIC_SECOC_APART);
     if (freshness >> 32 != gate->freshness >> 32) status = LACONIC_SECOC_SPENT;
     if (status == LACONIC_SECOC_OK) gate->freshness = freshness;
     gate->refused[status]++;

@@ -5,8 +5,8 @@
 #define FRESHNESS_BYTES 8U
 
 const char *laconic_secoc_text(laconic_secoc_status status) {
-    static const char *const texts[] = {"accepted", "wrong key or changed message", "replayed message",
-                                        "old freshness", "freshness used up"};
+    static const char *const texts[] = {"accepted", "wrong key or changed message", "replayed message", "old freshness",
+                                        "freshness used up"};
     return (unsigned)status < LACONIC_SECOC_STATUSES ? texts[status] : "unknown";
 }
 

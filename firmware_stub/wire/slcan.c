@@ -30,7 +30,9 @@ static bool number(const char *text, size_t count, uint32_t *value) {
     return true;
 }
 
-void laconic_slcan_init(laconic_slcan *slcan, char required_rate) {
+void LACONIC_SLCAN_BUILT(void) {}
+
+void(laconic_slcan_init)(laconic_slcan *slcan, char required_rate) {
     slcan->open = false;
     slcan->listen_only = false;
     slcan->required_rate = required_rate;
@@ -98,7 +100,19 @@ static laconic_slcan_event open_channel(laconic_slcan *slcan, bool listen_only) 
 /* The letters of commands, by number: letters lie far apart, and a table of places would have a word for each between
  * them. */
 static const char letters[] = "OLCSsYZVvNF";
-enum { OPEN, LISTEN, CLOSE, RATE, RATE_BY_REGISTERS, DATA_RATE, TIME_STAMPS, VERSION, OLD_VERSION, SERIAL, FLAGS };
+enum {
+    OPEN,
+    LISTEN,
+    CLOSE,
+    RATE,
+    RATE_BY_REGISTERS,
+    DATA_RATE,
+    TIME_STAMPS,
+    VERSION,
+    OLD_VERSION,
+    SERIAL_NUMBER,
+    FLAGS
+};
 
 static laconic_slcan_event command(laconic_slcan *slcan, size_t length) {
     uint32_t number = 0;
@@ -113,7 +127,7 @@ static laconic_slcan_event command(laconic_slcan *slcan, size_t length) {
     case TIME_STAMPS: return reply(slcan, slcan->open ? REFUSED : DONE);
     case VERSION:
     case OLD_VERSION: return reply(slcan, "V1010\r");
-    case SERIAL: return reply(slcan, "NLACO\r");
+    case SERIAL_NUMBER: return reply(slcan, "NLACO\r");
     case FLAGS: return reply(slcan, "F00\r");
     default: return reply(slcan, REFUSED);
     }

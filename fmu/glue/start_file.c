@@ -100,7 +100,8 @@ static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, con
     fmu_stream_u64(&stream, &scalar);
     fmu_stream_u64(&stream, &hash);
     fmu_stream_u64(&stream, &count);
-    if (version != FILE_VERSION || hash != fmu_token_hash(token) || !has_pairs(size - stream.at - 8, count)) return false;
+    if (version != FILE_VERSION || hash != fmu_token_hash(token) || !has_pairs(size - stream.at - 8, count))
+        return false;
     instance->scalar = scalar != 0;
     for (uint64_t k = 0; k < count; k++) {
         fmu_stream_u64(&stream, &reference);

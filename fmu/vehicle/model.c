@@ -146,6 +146,12 @@ static void refresh_ideal(fmu_model *self, uint32_t groups) {
     if (groups & FMU_GROUP_ENERGY) self->energy_J = laconic_energy_J(m, s);
 }
 
+void fmu_model_part_loads(double support_load_N[LACONIC_MAX_SUPPORTS], const laconic_reactions *ground,
+                          const laconic_vehicle *vehicle) {
+    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++)
+        support_load_N[i] = i < vehicle->support_count ? ground->normal_N[vehicle->wheel_count + i] : 0.0;
+}
+
 static void refresh_rates(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     const bool friction = self->plant.friction.acts;
@@ -187,6 +193,7 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
         fmu_friction_refresh(self, groups);
     else
         refresh_ideal(self, groups);
+    if (groups & FMU_GROUP_GROUND) fmu_model_part_loads(self->support_load_N, &self->ground, &self->plant.vehicle);
     if (groups & FMU_GROUP_SENSORS) fmu_sensors_refresh(self);
     if (FMU_MODEL_ESTIMATES && groups & FMU_GROUP_ESTIMATE) fmu_estimate_refresh(self);
     self->stale &= ~groups;

@@ -69,6 +69,7 @@
     double wheel_torque_Nm[LACONIC_MAX_WHEELS]; \
     double energy_J; \
     laconic_reactions ground; \
+    double support_load_N[LACONIC_MAX_SUPPORTS]; \
     laconic_rates rates; \
     laconic_sensor_outputs sensed
 
@@ -161,5 +162,10 @@ typedef struct fmu_tangent {
     laconic_input input;
     FMU_MOVING_MEMBERS;
 } fmu_tangent;
+
+/* The loads of supports, or their derivatives, which follow those of wheels in `ground`; 0 for supports that are not
+ * there. The description has them as an array of their own. */
+void fmu_model_part_loads(double support_load_N[LACONIC_MAX_SUPPORTS], const laconic_reactions *ground,
+                          const laconic_vehicle *vehicle);
 
 #endif

@@ -26,7 +26,8 @@ STATE_RATE = "der(wheel_speed_rad_per_s)"
 """The derivative that makes the wheel speeds states."""
 
 OF_ROLLING: Dependencies = dict.fromkeys(
-    ("wheel_torque_Nm", "wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N", "der(nu_rad_per_s)",
+    ("wheel_torque_Nm", "wheel_reaction_N", "wheel_lateral_N", "wheel_load_N", "support_load_N", "no_slip_margin_N",
+     "der(nu_rad_per_s)",
      "acceleration_body_m_per_s2", "slip_along_m_per_s", "slip_across_m_per_s"), EVERYTHING)
 """What these depend on where a drive has limits: its supply couples all motors."""
 OF_SLIPPING: Dependencies = {

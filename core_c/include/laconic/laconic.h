@@ -179,8 +179,10 @@ typedef struct laconic_model {
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal axes
  * of A (4.6), damping rates. About 2,000 flops plus 60 for each wheel; steps then need no sine of a given angle and no
- * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES, STRAIGHT_ONLY (fixed
- * wheels on parallel axle lines, as of skid steering, hold the heading where nothing slips), ILL_CONDITIONED (value:
+ * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES (item: the wheel that takes
+ * the last motion; value: what part of its way it would slide in that motion, 0 to 1), STRAIGHT_ONLY (fixed wheels on
+ * parallel axle lines, as of skid steering, hold the heading where nothing slips; item: the wheel whose line lies
+ * farthest off the first one's; value: by how much, in m), ILL_CONDITIONED (value:
  * the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where a constant or the
  * inverse of a scale is beyond 10¹⁵⁴ (single: 10¹⁹), so that the product of two would leave the range: every number of
  * a prepared model is finite. Where the vehicle has friction (laconic_vehicle_has_friction) the model is that of the
@@ -629,4 +631,7 @@ void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, 
 #ifdef __cplusplus
 }
 #endif
+
+#include "laconic/build.h" /* a program with other definitions than the library's does not link */
+
 #endif

@@ -31,8 +31,9 @@
     X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
-      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or be " \
-      "one line, or with ground.friction_coefficient the wheels slip; else release a locked wheel") \
+      "fixed and locked wheels prevent every motion: in the one that those before it allow, this wheel would slide " \
+      "by # of its way; the axle lines of all fixed wheels must meet in one point or be one line, or with " \
+      "ground.friction_coefficient the wheels slip; else release a locked wheel") \
     X(ILL_CONDITIONED, "ill-conditioned", /* ε √cond(A) >= 0.01 */ \
       "masses and lengths are too far apart for " LACONIC_REAL_NAME " precision: the condition number # leaves fewer " \
       "than two correct digits; check the units") \
@@ -65,8 +66,9 @@
     X(STEP_UNSOLVED, "step unsolved", /* friction: the contact forces of a step were not found */ \
       "no contact forces found for a step of # s; try another step or more roller_drag") \
     X(STRAIGHT_ONLY, "straight only", /* fixed wheels on parallel axle lines, on ideal ground */ \
-      "fixed wheels on parallel axle lines only drive straight, whatever their motors do; for skid steering give " \
-      "ground.friction_coefficient, so that wheels slip; else place them on one axle line") \
+      "fixed wheels on parallel axle lines only drive straight, whatever their motors do, and the line of this one " \
+      "lies # m off the first one's; for skid steering give ground.friction_coefficient, so that wheels slip; else " \
+      "place them on one axle line") \
     X(ZERO, "zero", \
       "# is zero; give a value above 0, or below 0 for a shaft that turns the other way") \
     X(TOO_MANY_BODIES, "too many bodies", /* below 0, too */ \

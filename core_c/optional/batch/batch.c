@@ -118,11 +118,11 @@ typedef struct layout {
 static layout layout_of(const laconic_batch_shape *shape, const lanes_width *width) {
     const size_t lanes = (size_t)shape->lane_count;
     const size_t blocks = (size_t)blocks_at_most(shape, lanes_of_width(width));
-    const size_t slots = blocks * (size_t)lanes_of_width(width);
+    const size_t lane_slots = blocks * (size_t)lanes_of_width(width);
     const size_t constants = width == NULL ? 0 : aligned(width->model_bytes) + aligned(width->integrator_bytes);
     layout l;
     l.order = (size_t)ROW_COUNT(shape->wheel_count) * row_bytes_of(shape);
-    l.slot_of = l.order + aligned(slots * sizeof(int32_t));
+    l.slot_of = l.order + aligned(lane_slots * sizeof(int32_t));
     l.kind_of = l.slot_of + aligned(lanes * sizeof(int32_t));
     l.status = l.kind_of + aligned(lanes * sizeof(int32_t));
     l.missed = l.status + aligned(lanes * sizeof(int32_t));
@@ -275,7 +275,7 @@ static bool kinds_fit(const laconic_batch_shape *shape, const laconic_batch_kind
     return true;
 }
 
-static void clear(unsigned char *memory, size_t bytes) {
+static void clear_bytes(unsigned char *memory, size_t bytes) {
     for (size_t i = 0; i < bytes; i++) memory[i] = 0;
 }
 
@@ -289,7 +289,7 @@ bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch
     b.shape.width_bytes = laconic_batch_width(shape->width_bytes);
     b.width = width_of(b.shape.width_bytes);
     const layout l = layout_of(shape, b.width);
-    clear(start, l.constants);
+    clear_bytes(start, l.constants);
     b.row_bytes = row_bytes_of(shape);
     b.rows = start;
     b.order = (int32_t *)(void *)(start + l.order);

@@ -2,9 +2,9 @@
 #ifndef LACONIC_BATCH_BLOCK_H
 #define LACONIC_BATCH_BLOCK_H
 
-#include "laconic/batch.h"
-
 #include "common.h"
+
+#include "laconic/batch.h"
 #include "lanes_width.h"
 
 /* Outputs follow the input. */

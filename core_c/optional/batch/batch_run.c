@@ -71,7 +71,7 @@ static void put_state(const place *p, const laconic_state *s) {
 /* A block far from the end of the count stays so by the steps that lanes take together: no machine runs for the 2⁵⁸
  * that it would take at least. */
 static void mark_far(laconic_batch_block *block, const laconic_state *s) {
-    if ((uint64_t)s->heading.turns + ((uint64_t)1 << 60) >= (uint64_t)1 << 61) block->far = true;
+    if ((uint64_t)s->heading.turns + ((uint64_t)1 << 60) >= (uint64_t)1 << 61) block->near_last_turn = true;
 }
 
 /* ---------------------------------------------------------------- rows, and one lane of them -- */

@@ -165,21 +165,21 @@ static inline laconic_number *row(const laconic_batch_block *block, int32_t numb
 /* One number of a row for each lane. */
 static inline real gathered(const laconic_number *of, const int32_t *lane) {
 #if LACONIC_LANES == 2
-#define OF(i) of[lane[i]], of[lane[i + 1]]
-    return (real){OF(0)};
+#define LANE_PAIRS(i) of[lane[i]], of[lane[i + 1]]
+    return (real){LANE_PAIRS(0)};
 #elif LACONIC_LANES == 4
-#define OF(i) of[lane[i]], of[lane[i + 1]], of[lane[i + 2]], of[lane[i + 3]]
-    return (real){OF(0)};
+#define LANE_PAIRS(i) of[lane[i]], of[lane[i + 1]], of[lane[i + 2]], of[lane[i + 3]]
+    return (real){LANE_PAIRS(0)};
 #else
-#define OF(i) of[lane[i]], of[lane[i + 1]], of[lane[i + 2]], of[lane[i + 3]]
+#define LANE_PAIRS(i) of[lane[i]], of[lane[i + 1]], of[lane[i + 2]], of[lane[i + 3]]
 #if LACONIC_LANES == 8
-    return (real){OF(0), OF(4)};
+    return (real){LANE_PAIRS(0), LANE_PAIRS(4)};
 #else
-    return (real){OF(0), OF(4), OF(8), OF(12)};
+    return (real){LANE_PAIRS(0), LANE_PAIRS(4), LANE_PAIRS(8), LANE_PAIRS(12)};
 #endif
 #endif
 }
-#undef OF
+#undef LANE_PAIRS
 
 INLINE real read(const laconic_batch_block *block, int32_t number, bool in_a_row) {
     real out;
@@ -253,7 +253,7 @@ INLINE void begin_run(lanes_run *run, laconic_batch_block *block) {
     run->rotates = acts(input.world_force_N[0], input.world_force_N[1], R(0));
     if (sloped(model)) run->rotates = ~none_of_them;
     run->refused = NOT(zero_if_finite(world_force_point(&input)) == R(0));
-    if (!block->far) return;
+    if (!block->near_last_turn) return;
     __builtin_memcpy(&turns, state_at(block, STATE_TURNS), sizeof turns);
     run->refused |= NOT(far_from_last_turn(turns));
 }

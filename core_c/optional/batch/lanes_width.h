@@ -88,10 +88,10 @@ typedef struct laconic_batch_block {
     lanes_method method;
     int32_t way; /* of its kinds: lanes of one way can share a block                      */
     int32_t count, wheel_count;
-    bool in_a_row;    /* its lanes follow each other, and rows have numbers for those that it lacks */
-    bool has_refused; /* some lane's status is not OK                                               */
-    bool far;         /* some lane's heading may be within 2⁶¹ turns of the last that is counted    */
-    uint32_t stopped; /* in a run, a bit for each lane that was refused                             */
+    bool in_a_row;       /* its lanes follow each other, and rows have numbers for those that it lacks */
+    bool has_refused;    /* some lane's status is not OK                                               */
+    bool near_last_turn; /* some lane's heading may be within 2⁶¹ turns of the last that is counted    */
+    uint32_t stopped;    /* in a run, a bit for each lane that was refused                             */
 } laconic_batch_block;
 
 /* Who takes the step of those lanes of a block that cannot go with the others, a bit for each; `after`: the steps of

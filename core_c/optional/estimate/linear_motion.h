@@ -2,8 +2,9 @@
 #ifndef LACONIC_LINEAR_MOTION_H
 #define LACONIC_LINEAR_MOTION_H
 
-#include "laconic/estimate.h"
 #include "step_internals.h"
+
+#include "laconic/estimate.h"
 
 /* An error of the state, plant less truth. Heading and wheel angles are linear in ∫ζ dt, so their errors are in that
  * of `travel`. `floor_…`: sizes of what rounding makes at least.

@@ -13,7 +13,7 @@
 
 #define FIRST_BIT ((uint64_t)1 << 52) /* of a significand; the format leaves it out */
 #define QUIET ((uint64_t)1 << 51)
-#define INFINITE ((uint64_t)0x7FF << 52)
+#define INFINITE_BITS ((uint64_t)0x7FF << 52)
 #define SIGN ((uint32_t)1 << 31) /* of the upper half */
 #define HALF ((uint32_t)1 << 31) /* of the last bit, as a rest */
 enum { NO_NUMBER = 0x7FF, BIAS = 1023 };
@@ -29,13 +29,13 @@ static uint64_t joined(uint32_t upper, uint32_t lower) { return (uint64_t)upper 
 
 /* The field of the exponent is 0 for zeros and subnormal numbers, which have the scale of 1 without the first bit. */
 static uint32_t exponent_of(uint64_t bits) { return high(bits) >> 20 & NO_NUMBER; }
-static bool is_nan(uint64_t bits) { return bits << 1 > INFINITE << 1; }
+static bool is_nan(uint64_t bits) { return bits << 1 > INFINITE_BITS << 1; }
 
 RARE static uint64_t sum_beyond_numbers(uint64_t a, uint64_t b) {
     if (is_nan(a)) return a | QUIET;
     if (is_nan(b)) return b | QUIET;
     if (exponent_of(a) != NO_NUMBER) return b;
-    return (a ^ b) >> 63 != 0 && exponent_of(b) == NO_NUMBER ? INFINITE | QUIET : a; /* ∞ − ∞ */
+    return (a ^ b) >> 63 != 0 && exponent_of(b) == NO_NUMBER ? INFINITE_BITS | QUIET : a; /* ∞ − ∞ */
 }
 
 /* The first bit of `whole`, where it is there, raises the exponent by one. */
@@ -76,7 +76,7 @@ static uint64_t sum(uint32_t sign, uint32_t exponent, uint64_t x, significand y)
     if (x >= FIRST_BIT << 1) {
         y.rest = y.rest >> 1 | (y.rest & 1) | low(x) << 31;
         x >>= 1;
-        if (++exponent == NO_NUMBER) return joined(sign, 0) | INFINITE;
+        if (++exponent == NO_NUMBER) return joined(sign, 0) | INFINITE_BITS;
     }
     return rounded(sign, exponent, x, y.rest);
 }
@@ -145,7 +145,7 @@ uint64_t laconic_soft_of_single(uint32_t single) {
     const uint64_t bits = joined(sign, 0) | (uint64_t)magnitude << 29;
     if (exponent == 0) return exact(sign, magnitude, 0U - 149U);
     if (exponent != 0xFF) return bits + joined((BIAS - 127) << 20, 0);
-    return bits | INFINITE | (magnitude << 9 != 0 ? QUIET : 0);
+    return bits | INFINITE_BITS | (magnitude << 9 != 0 ? QUIET : 0);
 }
 
 uint64_t laconic_soft_of_uint32(uint32_t whole) { return exact(0, whole, 0); }

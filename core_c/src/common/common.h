@@ -2,6 +2,10 @@
 #ifndef LACONIC_COMMON_H
 #define LACONIC_COMMON_H
 
+#ifndef LACONIC_IN_CORE
+#define LACONIC_IN_CORE /* build.h */
+#endif
+
 #include "laconic/laconic.h"
 
 /* Options that compilers reveal by macros, gcc by all of these and clang by the first two; laconic_self_test() finds

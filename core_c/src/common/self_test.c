@@ -25,10 +25,10 @@ static bool rounds_another_way(void) {
            0;
 }
 
-/* -fassociative-math: (1 + huge) − huge is 0, even where more digits are kept than the type has. */
+/* -fassociative-math: (1 + enormous) − enormous is 0, even where more digits are kept than the type has. */
 static bool sums_in_another_order(void) {
-    const real one = opaque(R(1)), huge = opaque(R(1e36)), sum = one + huge;
-    return sum - huge != R(0);
+    const real one = opaque(R(1)), enormous = opaque(R(1e36)), sum = one + enormous;
+    return sum - enormous != R(0);
 }
 
 /* x87, or float computed as double: a product that overflows stays finite and can be halved. */
@@ -74,8 +74,8 @@ static bool flushes_small_numbers(void) {
 
 /* libgcc's assembly for Arm without double precision: 1 − 2⁻³³(1 + ε) loses a bit too much (docs/soft-double.md). */
 static bool subtracts_wrongly(void) {
-    const real one = opaque(R(1)), small = R(1.16415321826934814453125e-10);
-    return one - opaque(small * (R(1) + LACONIC_EPSILON)) != R(1) - small;
+    const real one = opaque(R(1)), tiny = R(1.16415321826934814453125e-10);
+    return one - opaque(tiny * (R(1) + LACONIC_EPSILON)) != R(1) - tiny;
 }
 
 laconic_arithmetic laconic_self_test(void) {
@@ -88,9 +88,9 @@ laconic_arithmetic laconic_self_test(void) {
     return LACONIC_ARITHMETIC_SOUND;
 }
 
-#define TEXT(IDENTIFIER, text) text,
+#define TEXT_OF_ARITHMETIC(IDENTIFIER, text) text,
 
 const char *laconic_arithmetic_text(laconic_arithmetic found) {
-    static const char *const texts[] = {LACONIC_ARITHMETICS(TEXT)};
+    static const char *const texts[] = {LACONIC_ARITHMETICS(TEXT_OF_ARITHMETIC)};
     return (unsigned)found < LACONIC_ARITHMETIC_COUNT ? texts[found] : "unknown";
 }

@@ -15,7 +15,7 @@
 #define FALL_NEAR R(0.01)
 #define FALL_ASIDE R(0.05)
 #define FALL_FAR R(0.3)
-#define NEAR R(0.0625) /* (1/4)²: of the bound, squared */
+#define CLOSE_BY R(0.0625) /* (1/4)²: of the bound, squared */
 
 /* Something that sticks has the stiffness bound/τ. Above this multiple of the mass that it holds, the sums of the
  * equations would keep nothing of what else acts on the body. */
@@ -37,7 +37,7 @@ RARE real tau_of(const friction_path *path, real bound, real mass) {
 }
 
 static real fall_at(real off, real bound) {
-    return off > bound * bound ? FALL_FAR : (off > NEAR * bound * bound ? FALL_ASIDE : FALL_NEAR);
+    return off > bound * bound ? FALL_FAR : (off > CLOSE_BY * bound * bound ? FALL_ASIDE : FALL_NEAR);
 }
 
 /* One wheel in a pass: its impulses at the speeds of the pass before, and how they grow. */

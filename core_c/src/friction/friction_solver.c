@@ -215,7 +215,7 @@ static vector imbalance(const friction_search *at) {
     return rest;
 }
 
-INLINE void move(const contact_in_pass *c, vector by, real *speed, real p[2]) {
+INLINE void move_contact(const contact_in_pass *c, vector by, real *speed, real p[2]) {
     const real first = dot(c->row[0], by);
     p[0] = c->impulse[0] + c->gain[0][0] * first;
     p[1] = c->impulse[1] + c->gain[0][1] * first;
@@ -244,7 +244,7 @@ static void exact_pass(friction_search *at, contact_in_pass contacts[]) {
     }
     by = solved(&k);
     at->nu = plus(at->nu, by);
-    for (int32_t i = 0; i < at->count; i++) move(&contacts[i], by, &at->speed[i], at->impulse[i]);
+    for (int32_t i = 0; i < at->count; i++) move_contact(&contacts[i], by, &at->speed[i], at->impulse[i]);
 }
 
 /* Twice the energy of the motion without the contacts, with the motors' damping as inertia, which is what a step's

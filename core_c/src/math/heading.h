@@ -30,9 +30,9 @@ static inline direction direction_near(real x, unsigned quarters) {
 static inline direction direction_of_binary_angle(laconic_binary_angle angle) {
     const laconic_binary_angle eighth = (laconic_binary_angle)1 << (BINARY_ANGLE_BITS - 3);
     const unsigned quarters = (unsigned)((laconic_binary_angle)(angle + eighth) >> (BINARY_ANGLE_BITS - 2));
-    const laconic_binary_angle near =
+    const laconic_binary_angle remainder =
         (laconic_binary_angle)(angle - ((laconic_binary_angle)quarters << (BINARY_ANGLE_BITS - 2)));
-    return direction_near((real)(signed_binary_angle)near * BINARY_ANGLE_UNIT_RAD, quarters);
+    return direction_near((real)(signed_binary_angle)remainder * BINARY_ANGLE_UNIT_RAD, quarters);
 }
 
 #define HALF_TURN_BIT ((laconic_binary_angle)1 << (BINARY_ANGLE_BITS - 1))

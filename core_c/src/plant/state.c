@@ -1,6 +1,11 @@
 /* Start values, or the numbers of an outer integrator → state; a motion carried over to a changed vehicle. */
 #include "step_internals.h"
 
+/* The definitions that every program with a state must share (build.h). */
+#define DEFINE_BUILT(name) \
+    void name(void) {}
+LACONIC_BUILT(DEFINE_BUILT)
+
 static laconic_status check_start(const laconic_start *start, laconic_refusal *why) {
     for (int32_t k = 0; k < 3; k++)
         if (!is_finite(start->nu_rad_per_s[k]))

@@ -52,7 +52,7 @@ const char *laconic_field_name(laconic_field field) { return text_or_empty(name_
 #define PATH_START(member) "initial." #member
 #define PATH_RUN(member) "run." #member
 #define PATH_INPUT_ARRAY(member) #member "[#]"
-#define PATH_INPUT(member) #member
+#define PATH_INPUT_NUMBER(member) #member
 #define PATH_MOTOR(member) "vehicle.motor." #member
 #define PATH_IMU(member) "sensors.imu." #member
 #define PATH_IMU_ARRAY(member) PATH_IMU(member) "[#]"
@@ -79,7 +79,7 @@ const char *laconic_field_path(laconic_field field) { return text_or_empty(path_
 #define ITEMS_START(member) 0
 #define ITEMS_RUN(member) 0
 #define ITEMS_INPUT_ARRAY(member) sizeof(((laconic_input *)NULL)->member) / sizeof(real)
-#define ITEMS_INPUT(member) 0
+#define ITEMS_INPUT_NUMBER(member) 0
 #define ITEMS_MOTOR(member) 0
 #define ITEMS_IMU(member) 0
 #define ITEMS_IMU_ARRAY(member) sizeof(((laconic_imu_settings *)NULL)->member) / sizeof(real)

@@ -41,13 +41,34 @@ static void add_constraint(basis *known, const real row[3]) {
     }
 }
 
-static void collect_constraints(basis *known, const body *b, const laconic_vehicle *vehicle) {
+/* What part of its way a wheel would slide along a constraint row in the one motion that two known constraints leave:
+ * the sine of the angle by which the wheel misses that motion. */
+static real slide_of(const basis *known, const body *b, const laconic_wheel *wheel, const real row[3]) {
+    const vector motion = cross(vec(known->axis[0]), vec(known->axis[1]));
+    const real per_yaw = R(1) / (b->radius_m * b->yaw_scale);
+    const real vx = motion.x - (wheel->y_m - b->com_y_m) * per_yaw * motion.z;
+    const real vy = motion.y + (wheel->x_m - b->com_x_m) * per_yaw * motion.z;
+    const real way = laconic_root((vx * vx + vy * vy) * (row[0] * row[0] + row[1] * row[1]));
+    const real part = magnitude(dot(vec(row), motion)) / way;
+    return is_finite(part) ? part : R(0); /* a way beyond all numbers, or none */
+}
+
+/* Refuses the wheel that takes the last motion; `why` may be NULL. */
+static laconic_status collect_constraints(basis *known, const body *b, const laconic_vehicle *vehicle,
+                                          laconic_refusal *why) {
     known->count = 0;
     for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         real rows[2][3];
         const int32_t count = laconic_constraint_rows(rows, b, &vehicle->wheel[i]);
-        for (int32_t k = 0; k < count; k++) add_constraint(known, rows[k]);
+        for (int32_t k = 0; k < count; k++) {
+            const basis before = *known;
+            add_constraint(known, rows[k]);
+            if (known->count == 3)
+                return refuse(why, LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, i + 1,
+                              slide_of(&before, b, &vehicle->wheel[i], rows[k]), R(0));
+        }
     }
+    return LACONIC_OK;
 }
 
 /* Completes the constraints to a basis of all motions; the axes that are added span the allowed motions. */
@@ -69,6 +90,24 @@ static bool goes_straight_only(const basis *allowed, const laconic_vehicle *vehi
     for (int32_t i = 0; i < vehicle->wheel_count; i++)
         if (vehicle->wheel[i].locked) return false;
     return allowed->count == 1 && magnitude(allowed->axis[0][2]) < LACONIC_RANK_TOLERANCE;
+}
+
+/* Names the fixed wheel whose axle line lies farthest off that of the first one, and how far. */
+static laconic_status refuse_straight(const laconic_vehicle *vehicle, laconic_refusal *why) {
+    int32_t first = -1, farthest = -1;
+    real most_m = R(0);
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
+        if (vehicle->wheel[i].kind != LACONIC_WHEEL_FIXED) continue;
+        if (first < 0) first = farthest = i;
+        const laconic_wheel *a = &vehicle->wheel[first], *w = &vehicle->wheel[i];
+        const direction axle = laconic_direction_of_angle(a->axle_rad);
+        const real off_m = magnitude((w->y_m - a->y_m) * axle.cosine - (w->x_m - a->x_m) * axle.sine);
+        if (off_m > most_m) {
+            most_m = off_m;
+            farthest = i;
+        }
+    }
+    return refuse(why, LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, farthest + 1, most_m, R(0));
 }
 
 /* What the wheels contribute to a form: value_i = largest · share_i. */
@@ -313,7 +352,7 @@ static void fill_slope(laconic_model *m, const laconic_vehicle *vehicle) {
 /* `on_wheels`: without them the model is that of the body alone. */
 static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehicle, bool on_wheels,
                               laconic_refusal *why) {
-    const laconic_status status = laconic_vehicle_check(vehicle, why);
+    laconic_status status = laconic_vehicle_check(vehicle, why);
     laconic_model m = ALL_ZERO;
     basis constraints = ALL_ZERO;
     axes motions = ALL_ZERO;
@@ -322,12 +361,10 @@ static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehic
     laconic_body_of(&b, vehicle);
     fill_constants(&m, vehicle, &b);
     fill_slope(&m, vehicle);
-    if (on_wheels) collect_constraints(&constraints, &b, vehicle);
+    if (on_wheels) status = collect_constraints(&constraints, &b, vehicle, why);
+    if (status != LACONIC_OK) return status;
     allowed_motions(&motions.scaled, &constraints);
-    if (motions.scaled.count == 0)
-        return refuse(why, LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, R(constraints.count), R(0));
-    if (goes_straight_only(&motions.scaled, vehicle))
-        return refuse(why, LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, R(0), R(0));
+    if (goes_straight_only(&motions.scaled, vehicle)) return refuse_straight(vehicle, why);
     m.dof = motions.scaled.count;
     if (on_wheels) project_wheels(&m, &motions.scaled, &b, vehicle);
     diagonalise(&m, &motions, &b, vehicle);

@@ -321,14 +321,14 @@ static void a_drive_on_ideal_ground_needs_wheels_that_allow_a_motion(void) {
     laconic_plant plant;
     laconic_slip slip;
     v.drive.supply_V = 24;
-    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0,
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 3,
                    laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
     laconic_vehicle movable = v;
     movable.wheel_count = 2;
     plant = started(movable, 1e-3, 0, 0, 0);
     memset(&slip, 3, sizeof slip);
     const laconic_slip before = slip;
-    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0,
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 3,
                    laconic_slip_set(&slip, &plant.friction, &v, &start, &why), why);
     TEST_ASSERT_EQUAL_MEMORY(&before, &slip, sizeof slip);
 }

@@ -229,7 +229,7 @@ static void wheels_that_allow_no_motion_on_ideal_ground_are_refused(void) {
     ASSERT_STATUS(LACONIC_OK, status_of(&v));
     v.wheel_count = 0;
     for (int i = 0; i < 3; i++) add_wheel(&v, LACONIC_WHEEL_FIXED, i, i * i, i, 0);
-    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, status_of(&v), why);
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 3, status_of(&v), why);
 }
 
 /* Then nothing of it is left for the motor's own voltage. */

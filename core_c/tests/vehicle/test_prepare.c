@@ -148,8 +148,24 @@ static void three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion(void
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.1, PI / 2, 0.0);
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0.2, 0.2, 1.0, 0.0);
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0.3, 0.2, 2.0, 0.0);
-    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 3, laconic_prepare(&model, &v, &why), why);
     TEST_ASSERT_EQUAL_MEMORY(&before, &model, sizeof model);
+}
+
+/* The first two turn the body about the origin. The third stands 0.2 ahead of it and should roll to the left; its axle
+ * is turned from that by an angle whose sine is what it would slide. */
+static void a_refusal_of_every_motion_has_the_wheel_and_what_part_of_its_way_it_would_slide(void) {
+    laconic_vehicle v = bare_body();
+    laconic_model model;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.1, 0.0, 0.0, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.1, PI / 2, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, -0.2, PI / 2, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.2, 0.0, EITHER(1e-6, 1e-3), 0.0);
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 4, laconic_prepare(&model, &v, &why), why);
+    ASSERT_NEAR(EITHER(1e-12, 1e-7), EITHER(1e-6, 1e-3), why.value);
+    v.wheel[3].axle_rad = REAL(PI / 6);
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 4, laconic_prepare(&model, &v, &why), why);
+    ASSERT_NEAR(ROUNDING, 0.5, why.value);
 }
 
 static void fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip(void) {
@@ -159,9 +175,10 @@ static void fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip(voi
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0.15, -0.2, PI / 2, 0.0);
     ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
     add_wheel(&v, LACONIC_WHEEL_FIXED, -0.15, 0.2, -PI / 2, 0.0);
-    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
-    v.wheel[3].locked = true; /* which it has not */
-    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 3, laconic_prepare(&model, &v, &why), why);
+    ASSERT_NEAR(ROUNDING, 0.3, why.value); /* its line from that of the first */
+    v.wheel[3].locked = true;              /* which it has not */
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 3, laconic_prepare(&model, &v, &why), why);
     v.wheel[2].axle_rad = REAL(-0.4); /* its line meets the others': the vehicle rotates about that point */
     TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
     v.wheel[2].axle_rad = REAL(-PI / 2);
@@ -327,6 +344,7 @@ int main(void) {
     RUN_TEST(axle_lines_that_agree_to_rounding_count_once);
     RUN_TEST(a_locked_wheel_does_not_rotate);
     RUN_TEST(three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion);
+    RUN_TEST(a_refusal_of_every_motion_has_the_wheel_and_what_part_of_its_way_it_would_slide);
     RUN_TEST(fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip);
     RUN_TEST(a_brake_may_leave_straight_motion_alone);
     RUN_TEST(what_the_vehicle_check_refuses_is_refused);

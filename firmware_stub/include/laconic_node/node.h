@@ -144,4 +144,6 @@ bool laconic_node_is_busy(const laconic_node *node);
 /* Microseconds until on_tick has something to do, at most the time to the next heartbeat; 0: now. */
 uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us);
 
+#include "laconic_node/build.h" /* a port with other definitions than the node's does not link */
+
 #endif

@@ -40,4 +40,13 @@ laconic_slcan_event laconic_slcan_feed(laconic_slcan *slcan, char byte, laconic_
  * the frame's length is one that its kind of CAN does not have or this build has no room for. */
 size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]);
 
+/* A port with another definition than slcan.c does not link (build.h). */
+#if LACONIC_NODE_CAN_FD
+#define LACONIC_SLCAN_BUILT laconic_slcan_built_with_LACONIC_NODE_CAN_FD_1
+#else
+#define LACONIC_SLCAN_BUILT laconic_slcan_built_with_LACONIC_NODE_CAN_FD_0
+#endif
+void LACONIC_SLCAN_BUILT(void);
+#define laconic_slcan_init(...) (LACONIC_SLCAN_BUILT(), laconic_slcan_init(__VA_ARGS__))
+
 #endif

@@ -45,4 +45,13 @@ bool laconic_gate_seal(laconic_gate *gate, const laconic_frame *frame, laconic_f
 /* True iff this frame needs a code, and all that follow the last CHALLENGE have been used. */
 bool laconic_gate_is_spent(const laconic_gate *gate, const laconic_frame *frame);
 
+/* A port with another definition than gate.c does not link (laconic_node/build.h). */
+#if LACONIC_NODE_CAN_FD
+#define LACONIC_GATE_BUILT laconic_gate_built_with_LACONIC_NODE_CAN_FD_1
+#else
+#define LACONIC_GATE_BUILT laconic_gate_built_with_LACONIC_NODE_CAN_FD_0
+#endif
+void LACONIC_GATE_BUILT(void);
+#define laconic_gate_init(...) (LACONIC_GATE_BUILT(), laconic_gate_init(__VA_ARGS__))
+
 #endif

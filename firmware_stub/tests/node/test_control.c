@@ -101,7 +101,7 @@ static void a_new_session_forgets_selections_and_answers(void) {
     bench_load(2);
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_NU, LACONIC_RAW_NU, LACONIC_RAW_VOLTAGE));
     node.answers_due = 4;
-    node.pending = BIT(LACONIC_WIRE_NU);
+    node.pending = BIT_OF(LACONIC_WIRE_NU);
     node.loader.frame_count = 9;
     laconic_node_make_idle(&node);
     TEST_ASSERT_TRUE(node.send == 0 && node.raw_input.take == 0 && node.raw_output.send == 0);

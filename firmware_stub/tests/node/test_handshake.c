@@ -73,7 +73,7 @@ static void a_motion_frame_that_is_spoilt_is_counted_as_that(void) {
 }
 
 static void a_new_session_has_open_ears(void) {
-    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    node.session.deaf = BIT_OF(LACONIC_WIRE_SYNC);
     bench_open(12);
     TEST_ASSERT_EQUAL_HEX32(0, node.session.deaf);
 }

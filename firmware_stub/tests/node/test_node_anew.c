@@ -39,7 +39,7 @@ static void a_second_frame_of_all_voltages_replaces_the_first(void) {
 static uint32_t waiting(void) {
     laconic_frame frame;
     uint32_t offsets = 0;
-    while (laconic_node_next_frame(&node, &frame)) offsets |= BIT(frame.id - LACONIC_WIRE_ID_BASE);
+    while (laconic_node_next_frame(&node, &frame)) offsets |= BIT_OF(frame.id - LACONIC_WIRE_ID_BASE);
     return offsets;
 }
 
@@ -50,7 +50,7 @@ static void a_second_selection_replaces_the_first(void) {
     bench_start_lockstep();
     bench_sync(1);
     laconic_node_on_tick(&node, now_us);
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_NU) | BIT(LACONIC_WIRE_RAW_OUTPUT), waiting());
+    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_NU) | BIT_OF(LACONIC_WIRE_RAW_OUTPUT), waiting());
 }
 
 /* A double comes in two halves; a number in single precision is whole with its first. */

@@ -77,7 +77,7 @@ static void a_frame_that_waits_goes_on_waiting_when_it_is_due_again(void) {
 static void a_command_that_comes_again_leaves_its_answer_waiting(void) {
     send_control(LACONIC_WIRE_COMMAND_BEGIN);
     bench_send_count(LACONIC_WIRE_CONTROL, data, sent[LACONIC_WIRE_CONTROL]);
-    TEST_ASSERT_EQUAL_HEX16(BIT(LACONIC_WIRE_CONTROL), node.answers_due);
+    TEST_ASSERT_EQUAL_HEX16(BIT_OF(LACONIC_WIRE_CONTROL), node.answers_due);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_BEGIN, data[2]);
 }
@@ -120,7 +120,7 @@ static void fetch_counted(uint8_t counts[LACONIC_WIRE_OFFSETS], uint32_t *seen) 
         const uint8_t offset = (uint8_t)(frame.id - LACONIC_WIRE_ID_BASE);
         counts[offset]++;
         TEST_ASSERT_EQUAL_UINT8(counts[offset] & (frame.fd ? 255U : 15U), laconic_counter_of(offset, frame.data));
-        *seen |= BIT(offset);
+        *seen |= BIT_OF(offset);
     }
 }
 
@@ -140,7 +140,7 @@ static void every_kind_of_frame_has_a_count_of_its_own(void) {
         send_control(LACONIC_WIRE_COMMAND_BEGIN);
         fetch_counted(counts, &seen);
     }
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_OFFSETS) - BIT(LACONIC_WIRE_NODE_FIRST), seen);
+    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_OFFSETS) - BIT_OF(LACONIC_WIRE_NODE_FIRST), seen);
 }
 
 /* ---------------------------------------------------------------------------------------- telling -- */
@@ -213,9 +213,9 @@ static void an_encoder_that_falls_away_takes_no_other_frame_along(void) {
     load();
     bench_select(LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_NU, 0, 0);
     laconic_node_publish(&node);
-    node.pending |= BIT(LACONIC_WIRE_ERROR_ESTIMATE);
+    node.pending |= BIT_OF(LACONIC_WIRE_ERROR_ESTIMATE);
     laconic_node_start_sensors(&node, &none);
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_NU) | BIT(LACONIC_WIRE_ERROR_ESTIMATE), node.pending);
+    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_NU) | BIT_OF(LACONIC_WIRE_ERROR_ESTIMATE), node.pending);
 }
 
 static void a_frame_that_is_none_of_the_nodes_is_so_for_one_reason_or_for_two(void) {

@@ -186,8 +186,8 @@ static void frames_of_all_sensors_wait_side_by_side(void) {
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_IMU, 0, 0);
     bench_start_lockstep();
     bench_step(1);
-    while (laconic_node_next_frame(&node, &frame)) seen |= BIT(frame.id - LACONIC_WIRE_ID_BASE);
-    const uint32_t wanted = BIT(LACONIC_WIRE_WHEEL_ANGLE) | BIT(LACONIC_WIRE_IMU) | BIT(LACONIC_WIRE_ENCODER);
+    while (laconic_node_next_frame(&node, &frame)) seen |= BIT_OF(frame.id - LACONIC_WIRE_ID_BASE);
+    const uint32_t wanted = BIT_OF(LACONIC_WIRE_WHEEL_ANGLE) | BIT_OF(LACONIC_WIRE_IMU) | BIT_OF(LACONIC_WIRE_ENCODER);
     TEST_ASSERT_EQUAL_HEX32(wanted, seen & wanted);
 }
 
@@ -357,10 +357,10 @@ static void frames_that_wait_go_on_where_they_were_though_no_sensor_is_selected_
     bench_step(1);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
     TEST_ASSERT_EQUAL_INT(0, data[1] >> 5);
-    node.pending &= ~BIT(LACONIC_WIRE_WHEEL_ANGLE);
+    node.pending &= ~BIT_OF(LACONIC_WIRE_WHEEL_ANGLE);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
     TEST_ASSERT_EQUAL_INT(1, data[1] >> 4);
-    node.pending |= BIT(LACONIC_WIRE_WHEEL_ANGLE);
+    node.pending |= BIT_OF(LACONIC_WIRE_WHEEL_ANGLE);
     bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     bench_select(LACONIC_NODE_SEND_NU, 0, 0);
     bench_start_lockstep();

@@ -117,10 +117,10 @@ static void only_the_torques_hold_the_next_step_back(void) {
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     bench_pass_ms(2);
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
-    while (node.pending & BIT(LACONIC_WIRE_RAW_OUTPUT)) TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame));
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_IMU), node.pending);
+    while (node.pending & BIT_OF(LACONIC_WIRE_RAW_OUTPUT)) TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame));
+    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_IMU), node.pending);
     bench_send(LACONIC_WIRE_SELECT, select);
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_RESULT) | BIT(LACONIC_WIRE_IMU), node.pending);
+    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_RESULT) | BIT_OF(LACONIC_WIRE_IMU), node.pending);
     laconic_node_on_tick(&node, now_us);
     TEST_ASSERT_EQUAL_UINT64(2, node.plant.steps);
 }
@@ -192,7 +192,7 @@ static void a_sync_begins_raw_inputs_anew(void) {
 static void raw_numbers_and_an_estimate_make_a_node_speak_while_drives_play(void) {
     play(LACONIC_RAW_WHEEL_SPEED, 0x20U);
     bench_pass_ms(100);
-    TEST_ASSERT_TRUE(node.pending & BIT(LACONIC_WIRE_HEARTBEAT));
+    TEST_ASSERT_TRUE(node.pending & BIT_OF(LACONIC_WIRE_HEARTBEAT));
 }
 
 int main(void) {

@@ -70,7 +70,7 @@ static void in_lockstep_a_tick_without_a_sync_does_nothing(void) {
         bench_start_lockstep();
         laconic_node_on_tick(&node, now_us);
         TEST_ASSERT_EQUAL_UINT64(0, node.plant.steps);
-        TEST_ASSERT_EQUAL_HEX32(0, node.pending & BIT(LACONIC_WIRE_NU));
+        TEST_ASSERT_EQUAL_HEX32(0, node.pending & BIT_OF(LACONIC_WIRE_NU));
     }
 }
 

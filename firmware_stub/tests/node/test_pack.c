@@ -177,7 +177,7 @@ static void a_heartbeat_tells_steps_state_and_lateness(void) {
     node.free_run.worst_lateness_us = 0;
     TEST_ASSERT_EQUAL_UINT16(0, heartbeat().worst_lateness);
     node.free_run.worst_lateness_us = 1000000;
-    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    node.session.deaf = BIT_OF(LACONIC_WIRE_SYNC);
     beat = heartbeat();
     TEST_ASSERT_EQUAL_UINT16(32767, beat.worst_lateness);
     TEST_ASSERT_EQUAL_UINT8(1, beat.deaf);
@@ -233,7 +233,7 @@ static void a_challenge_repeats_the_request_of_its_hello(void) {
 static void what_a_frame_does_not_tell_is_zero(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     memset(data, 0xFF, sizeof data);
-    node.answers_due = (uint16_t)BIT(LACONIC_WIRE_CONTROL);
+    node.answers_due = (uint16_t)BIT_OF(LACONIC_WIRE_CONTROL);
     laconic_node_pack(&node, LACONIC_WIRE_RESULT, data);
     TEST_ASSERT_TRUE(data[0] == 0 && data[7] == 0);
     memset(data, 0xFF, sizeof data);
@@ -259,7 +259,7 @@ static void a_number_just_below_a_half_is_rounded_down(void) {
 }
 
 static void a_deaf_node_that_was_never_late_says_so(void) {
-    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    node.session.deaf = BIT_OF(LACONIC_WIRE_SYNC);
     const struct laconic_dbc_heartbeat_t beat = heartbeat();
     TEST_ASSERT_TRUE(beat.deaf == 1 && beat.worst_lateness == 0);
 }
@@ -394,7 +394,7 @@ static void wheels_of_a_puck_stand_still(void) {
     static const uint8_t frames[] = {LACONIC_WIRE_WHEEL_SPEED, LACONIC_WIRE_WHEEL_ANGLE};
     uint8_t data[LACONIC_FRAME_BYTES];
     publish(2, 0, 0);
-    node.pending |= BIT(LACONIC_WIRE_WHEEL_ANGLE);
+    node.pending |= BIT_OF(LACONIC_WIRE_WHEEL_ANGLE);
     bench_load(0);
     for (size_t k = 0; k < sizeof frames; k++) {
         TEST_ASSERT_TRUE(bench_receive(frames[k], data));

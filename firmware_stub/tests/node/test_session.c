@@ -37,9 +37,9 @@ static void hello_drops_no_frame_that_waits(void) {
     laconic_node_on_tick(&node, now_us);
     laconic_protect_plain(LACONIC_WIRE_HELLO, frame.data, 0);
     laconic_node_on_frame(&node, &frame, now_us);
-    while (laconic_node_next_frame(&node, &frame)) seen |= BIT(frame.id - LACONIC_WIRE_ID_BASE);
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_HEARTBEAT) | BIT(LACONIC_WIRE_IDENTITY) | BIT(LACONIC_WIRE_CHALLENGE),
-                            seen);
+    while (laconic_node_next_frame(&node, &frame)) seen |= BIT_OF(frame.id - LACONIC_WIRE_ID_BASE);
+    TEST_ASSERT_EQUAL_HEX32(
+        BIT_OF(LACONIC_WIRE_HEARTBEAT) | BIT_OF(LACONIC_WIRE_IDENTITY) | BIT_OF(LACONIC_WIRE_CHALLENGE), seen);
 }
 
 static void the_nonce_depends_on_seed_and_instant(void) {
@@ -218,7 +218,7 @@ static void stale_commands_pass_at_the_rate_of_their_crc(void) {
 static void a_session_counts_from_the_beginning(void) {
     bench_load(2);
     for (int k = 0; k < 5; k++) TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
-    node.session.armed = node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    node.session.armed = node.session.deaf = BIT_OF(LACONIC_WIRE_SYNC);
     TEST_ASSERT_EQUAL_UINT8(0, bench_open(8));
     TEST_ASSERT_TRUE(node.session.armed == 0 && node.session.deaf == 0);
     TEST_ASSERT_EQUAL_HEX32(laconic_run_key(node.session.key, 0), node.session.run_key);
@@ -289,7 +289,7 @@ static void an_open_needs_the_echo_and_its_protection(void) {
 
 static void a_run_begins_with_open_ears(void) {
     bench_load(2);
-    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    node.session.deaf = BIT_OF(LACONIC_WIRE_SYNC);
     bench_start_lockstep();
     TEST_ASSERT_EQUAL_UINT32(0, node.session.deaf);
 }

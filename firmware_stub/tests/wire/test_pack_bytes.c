@@ -21,7 +21,7 @@ static void nothing_is_written_behind_the_eighth_byte_of_a_classic_frame(void) {
     TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
     for (uint8_t offset = LACONIC_WIRE_NODE_FIRST; offset < LACONIC_WIRE_OFFSETS; offset++) {
         if (laconic_wire[offset].length != 8) continue;
-        node.answers_due = BIT(LACONIC_WIRE_CONTROL);
+        node.answers_due = BIT_OF(LACONIC_WIRE_CONTROL);
         memset(data, 0x5A, sizeof data);
         laconic_node_pack(&node, offset, data);
         for (size_t k = 8; k < sizeof data; k++) TEST_ASSERT_EQUAL_HEX8(0x5A, data[k]);

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-
 from laconic.benchmark.counting import cachegrind_present, instructions_of
 from laconic.paths import built
 

@@ -14,6 +14,7 @@ from laconic_build.c.facts import CORE, Facts
 
 INCLUDE = re.compile(r'^#include (?:<(?P<system>\w+\.h)>|"(?:laconic/)?(?P<own>\w+\.h)").*\n', re.MULTILINE)
 MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
+CHECKED = re.compile(r"^#define (laconic_\w+)\(", re.MULTILINE)
 
 HEADER_HEAD = """\
 /* Laconic {version}. {sentence}
@@ -43,8 +44,9 @@ SINGLE_REALS = """\
 
 SOURCE_HEAD = """\
 /* Laconic {version}. How to compile it, and the licence: {name}.h. */
-#include "{name}.h"
-
+#define {prefix}_IN_CORE /* no check of a program's definitions here */
+{hidden}#include "{name}.h"
+{checked}
 /* Every operation is rounded once, whatever the options say of fused multiply-add. */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
@@ -56,9 +58,23 @@ SOURCE_HEAD = """\
 #endif
 """
 
+HIDDEN = """\
+/* Two builds in one process, such as two plugins, must not call each other's functions: one with unusual definitions
+ * exports no names from a shared library, unless {prefix}_EXPORTED is defined. */
+#if defined(__ELF__) && defined(__PIC__) && !defined({prefix}_EXPORTED) && \\
+    ({unusual})
+#define {prefix}_IS_HIDDEN
+#pragma GCC visibility push(hidden)
+#endif
+"""
+
 SOURCE_FOOT = """
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC pop_options
+#endif
+#ifdef {prefix}_IS_HIDDEN
+#pragma GCC visibility pop
+#undef {prefix}_IS_HIDDEN
 #endif
 """
 
@@ -69,9 +85,9 @@ def amalgamation(facts: Facts) -> dict[str, str]:
     single = "#define LACONIC_SINGLE_SINGLE /* float, in each place that chooses the scalar type */\n" + renamed(header)
     return {
         "laconic.h": header_head(facts, "laconic", PLAIN_REALS) + header,
-        "laconic.c": source_head(facts, "laconic") + source + SOURCE_FOOT,
+        "laconic.c": whole(facts, "laconic", header, source),
         "laconic_single.h": header_head(facts, "laconic_single", SINGLE_REALS) + single,
-        "laconic_single.c": source_head(facts, "laconic_single") + renamed(source) + SOURCE_FOOT,
+        "laconic_single.c": whole(facts, "laconic_single", single, renamed(source)),
     }
 
 
@@ -80,8 +96,23 @@ def header_head(facts: Facts, name: str, reals: str) -> str:
     return HEADER_HEAD.format(version=facts.version, sentence=facts.sentence, name=name, reals=reals, licence=licence)
 
 
-def source_head(facts: Facts, name: str) -> str:
-    return SOURCE_HEAD.format(version=facts.version, name=name)
+def whole(facts: Facts, name: str, header: str, source: str) -> str:
+    """The source file. A program may include it, also behind the header."""
+    prefix, checked = name.upper(), undefined(CHECKED.findall(header))
+    hidden = HIDDEN.format(prefix=prefix, unusual=" || \\\n     ".join(unusual_definitions(prefix)))
+    head = SOURCE_HEAD.format(version=facts.version, name=name, prefix=prefix, checked=checked, hidden=hidden)
+    return head + source + SOURCE_FOOT.format(prefix=prefix)
+
+
+def unusual_definitions(prefix: str) -> list[str]:
+    """Conditions that a definition of real.h is not the usual one. The second pair is always float, and has names of
+    its own."""
+    real = (CORE / "include" / "laconic" / "real.h").read_text("utf-8")
+    usual = re.findall(r"^#ifndef (LACONIC_\w+).*\n#define \1 (\d+)$", real, re.MULTILINE)
+    own = [(name.replace("LACONIC", prefix), value) for name, value in usual]
+    switches = ["LACONIC_SINGLE"] if prefix == "LACONIC" else []
+    return [f"defined({name})" for name in [*switches, f"{prefix}_SCENE_HEADER"]] + [
+        f"(defined({name}) && {name} != {value})" for name, value in own]
 
 
 def public_headers() -> str:

@@ -37,6 +37,10 @@ TOOLS = {
     "zephyr": Tool("include", "laconic", "laconic-{version}-zephyr.zip"),
     "cmsis-pack": Tool("include", "", "{title}.{title}.{version}.pack"),
 }
+BY_ITS_FOLDER = '''\
+/* The same header as <laconic/{name}>, the path that the project's pages include it by. */
+#include "../{name}"
+'''
 OLDEST = (1980, 1, 1, 0, 0, 0)  # that an archive can name: the same files are the same bytes
 
 
@@ -49,6 +53,7 @@ def packages(facts: Facts) -> dict[str, dict[str, str]]:
 def package(tool: str, pair: Mapping[str, str], values: Mapping[str, str], facts: Facts) -> dict[str, str]:
     headers = TOOLS[tool].headers
     files = {f"{headers if name.endswith('.h') else 'src'}/{name}": text for name, text in pair.items()}
+    files |= {f"{headers}/laconic/{name}": BY_ITS_FOLDER.format(name=name) for name in pair if name.endswith(".h")}
     files |= {"LICENSE": facts.licence, "README.md": filled(TEMPLATES / "README.md", values)}
     folder = TEMPLATES / tool
     files |= {path.relative_to(folder).as_posix(): filled(path, values)

@@ -12,8 +12,7 @@ from laconic.scene.reference import Signal, inputs, outputs
 from laconic_build.site.scene_reference import descriptions
 
 SOURCE = Path(__file__).resolve().parents[3]
-ITEMS = {"": "1", "[1|2]": "2: x, y", "[1|2|3]": "3", "[i]": "one for each wheel",
-         "[j]": "one for each support"}
+ITEMS = {"": "1", "[1|2]": "2: x, y", "[1|2|3]": "3", "[i]": "one for each wheel", "[j]": "one for each support"}
 
 TEXT = """# Signals
 

@@ -151,6 +151,16 @@ extern const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS];
 extern const uint8_t laconic_wire_data_ids[LACONIC_WIRE_CLASSIC][16]; /* profile 22 */
 uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 
+/* The lengths of these tables are in the name of an empty function, so that a node with others does not link. */
+#if LACONIC_NODE_WITH_ESTIMATE
+#define LACONIC_WIRE_BUILT laconic_wire_built_with_LACONIC_NODE_WITH_ESTIMATE_1
+#elif LACONIC_NODE_WITH_SENSORS
+#define LACONIC_WIRE_BUILT laconic_wire_built_with_LACONIC_NODE_WITH_ESTIMATE_0_and_LACONIC_NODE_WITH_SENSORS_1
+#else
+#define LACONIC_WIRE_BUILT laconic_wire_built_with_LACONIC_NODE_WITH_ESTIMATE_0_and_LACONIC_NODE_WITH_SENSORS_0
+#endif
+void LACONIC_WIRE_BUILT(void);
+
 #endif
 """
 
@@ -169,7 +179,7 @@ def main(dbc: str, directory: str) -> None:
     header = HEADER.format(constants="\n".join(constants(database)))
     out.joinpath("laconic_wire.h").write_text(NOTE + header, encoding="utf-8")
     body = ['#include "laconic_wire.h"', "", "const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS] = {"]
-    body += [*rows(database), "};", "", *tables(database), ""]
+    body += [*rows(database), "};", "", *tables(database), "", "void LACONIC_WIRE_BUILT(void) {}", ""]
     out.joinpath("laconic_wire.c").write_text(NOTE + "\n".join(body), encoding="utf-8")
     without_time(out)
 

@@ -288,6 +288,16 @@ class Plant(OwnMemory):
             self._contact = contact
         return self._contact
 
+    def wheel_loads(self, held: Any = None) -> np.ndarray:
+        """Normal load of each wheel [N], shape (N,): below 0 where it would lift, or with friction has lifted. Input as
+        for `run`; on ideal ground the loads change with the reactions that it needs."""
+        return self.core.numbers(self.reactions(held).normal_N)[: self.wheel_count]
+
+    def support_loads(self, held: Any = None) -> np.ndarray:
+        """The same of each support."""
+        supports = int(self.c.vehicle.support_count)
+        return self.core.numbers(self.reactions(held).normal_N)[self.wheel_count : self.wheel_count + supports]
+
     def reactions(self, held: Any = None) -> Any:
         """The laconic_reactions of this state and input, given as for `run`; Refused where one leaves the range of
         numbers."""

@@ -19,15 +19,14 @@ MEMBERS = {  # of laconic_outputs, where they are not called as the signal is
     **{name: ("pose", name) for name in
        ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")},
     "wheel_reaction_N": ("reactions", "along_N"), "wheel_lateral_N": ("reactions", "lateral_N"),
-    "no_slip_margin_N": ("reactions", "no_slip_margin_N"), "normal_load_N": ("reactions", "normal_N"),
+    "no_slip_margin_N": ("reactions", "no_slip_margin_N"),
 }
 FRICTION = "friction"  # the member of laconic_outputs with what only a vehicle with friction shows
+LOADS = ("wheel_load_N", "support_load_N")  # normal_N of the reactions: first those of the wheels
 SENSED = "sensors"  # the member with what sensors show
 OUTPUTS_OF = {FRICTION: "laconic_friction_outputs", SENSED: "laconic_sensor_outputs"}
 WHOLE = ("encoder_count",)
-GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N", "normal_load_N",
-          "support_load_N")  # what needs the reactions
-OF_SUPPORTS = "support_load_N"  # behind those of the wheels in their list
+GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N", *LOADS)  # what needs the reactions
 
 
 class Recorder(NotCopied):
@@ -100,11 +99,13 @@ def needs_sensors(core: Core, signal: str) -> bool:
     return signal.partition("[")[0] in _members(core, "laconic_sensor_outputs")
 
 
-def offset_of(core: Core, signal: str, wheel_count: int) -> int:
-    """Where a signal of a plant with so many wheels stands in laconic_outputs, in bytes; the index counts from 1."""
+def offset_of(core: Core, signal: str, wheel_count: int = 0) -> int:
+    """Where a signal stands in laconic_outputs, in bytes; the index counts from 1. The loads of supports follow those
+    of so many wheels."""
     name, _, index = signal.partition("[")
-    if name == OF_SUPPORTS:
-        name, index = "normal_load_N", str(int(index.rstrip("]")) + wheel_count)
+    if name in LOADS:
+        first = wheel_count if name == LOADS[1] else 0
+        return core.ffi.offsetof("laconic_outputs", "reactions", "normal_N", first + int(index.rstrip("]")) - 1)
     member = ("input", name) if name in core.input_fields else MEMBERS.get(name, (name,))
     for part in (FRICTION, SENSED):
         if name in _members(core, OUTPUTS_OF[part]):

@@ -17,11 +17,12 @@ from laconic.scene.signals import (
     FRICTION_LENGTHS,
     FRICTION_PER_WHEEL,
     LENGTHS,
-    LOADS,
     NEEDED,
     OUTPUT_LENGTHS,
     OUTPUTS_PER_WHEEL,
     PER_WHEEL,
+    SUPPORT_LOAD,
+    WHEEL_LOAD,
 )
 from laconic.scene.table import REQUIRED
 
@@ -34,8 +35,6 @@ RANGES = {"POSITIVE": "above 0", "NOT_NEGATIVE": "0 or more", "SHARE": "0 to 1",
 NEEDS = {"WITH_WHEELS": "must be given where there are wheels", "NEVER": "0",
          "WITH_MOTOR": "no motor; one of the two alone is refused"}
 MUST = "must be given"
-LOADS_IN_WORDS = {LOADS[0]: "Normal load of each wheel; below 0 it would lift",
-                  LOADS[1]: "Normal load of each support; below 0 it would lift"}
 OF_FMUS = (r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)"
            r"|; 0 (without|where|for) [^;]*")
 """Words that a variable has for the sake of FMI alone."""
@@ -59,7 +58,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Signal:
-    """One input or output; items: "" for one number, "[1|2]", or "[i]", one for each wheel."""
+    """One input or output; items: "" for one number, "[1|2]", "[i]", one for each wheel, or "[j]", for each support."""
 
     name: str
     items: str
@@ -156,13 +155,12 @@ def inputs(words: Mapping[str, str]) -> list[Signal]:
 def outputs(words: Mapping[str, str]) -> list[Signal]:
     """What `[outputs]` may list."""
     friction = {**dict.fromkeys(FRICTION_PER_WHEEL, -1), **FRICTION_LENGTHS}
-    every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), LOADS[0]: -1, LOADS[1]: -2, **friction, **OF_IMU,
-             **dict.fromkeys(OF_ENCODERS, -1)}
+    every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), **friction, **OF_IMU,
+             **dict.fromkeys(OF_ENCODERS, -1), WHEEL_LOAD: -1, SUPPORT_LOAD: -2}
     return _signals(every, words)
 
 
 def _signals(lengths: Mapping[str, int], words: Mapping[str, str]) -> list[Signal]:
-    words = LOADS_IN_WORDS | dict(words)
     items = {-2: "[j]", -1: "[i]", 0: "", 2: "[1|2]", 3: "[1|2|3]"}
     return [Signal(name, items[length], unit_of(name), re.sub(OF_FMUS, "", words[name]), NEEDED.get(name, ""))
             for name, length in lengths.items()]

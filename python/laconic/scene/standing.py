@@ -43,8 +43,9 @@ class Standing:
 
     def in_words(self) -> str:
         """All loads in one line."""
-        each = [*(f"wheel {i} {n:.3g} N" for i, n in enumerate(self.wheel_N, 1)),
-                *(f"support {i} {n:.3g} N" for i, n in enumerate(self.support_N, 1))]
+        of_all = (("wheel", self.wheel_N), ("support", self.support_N))
+        each = [f"{what} {i} {n:.3g} N ({100.0 * n / (self.weight_N or 1.0):.3g} %)"
+                for what, loads in of_all for i, n in enumerate(loads, 1)]
         return f"normal loads at rest: {', '.join(each)}"
 
     def as_json(self) -> dict[str, Any]:

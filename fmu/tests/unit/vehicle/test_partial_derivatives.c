@@ -11,6 +11,9 @@ void setUp(void) { begin_test(fmi2ModelExchange); }
 void tearDown(void) { end_test(); }
 
 static void at_here(void) {
+    set_integer("support_count", 0, 1);
+    set("support_x_m", 1, 0.3);
+    set("com_z_m", 0, 0.2);
     initialise();
     OK(fmi2EnterContinuousTimeMode(c));
     OK(fmi2SetContinuousStates(c, here, STATES));
@@ -48,9 +51,11 @@ static const struct {
                 {"der(wheel_angle_rad)", 4},
                 {"wheel_lateral_N", 4},
                 {"heading_wrapped_rad", 1},
-                {"no_slip_margin_N", 1}};
+                {"no_slip_margin_N", 1},
+                {"wheel_load_N", 4},
+                {"support_load_N", 4}};
 
-#define UNKNOWNS 46U
+#define UNKNOWNS 54U
 
 static uint32_t list_unknowns(fmi2ValueReference list[UNKNOWNS]) {
     uint32_t used = 0;

@@ -32,7 +32,7 @@ static void wheels_that_prevent_every_motion_are_refused(void) {
     set("friction_coefficient", 0, 0);
     for (uint32_t k = 1; k <= 4; k++) set_flag("wheel_locked", k);
     ASSERT_REFUSED(initialise_refused(),
-                   "this vehicle cannot start: wheel_kind: fixed and locked wheels prevent every motion");
+                   "this vehicle cannot start: wheel_kind[3]: fixed and locked wheels prevent every motion");
 }
 
 /* With an explicit method no step that the importer chooses later is refused at the start; one of its own is. */

@@ -93,8 +93,8 @@ static const struct {
 } shown[] = {{"energy_J", 1},         {"velocity_body_m_per_s", 2}, {"yaw_rate_rad_per_s", 1},
              {"wheel_angle_rad", 4},  {"wheel_speed_rad_per_s", 4}, {"wheel_torque_Nm", 4},
              {"wheel_reaction_N", 4}, {"wheel_lateral_N", 4},       {"acceleration_body_m_per_s2", 2},
-             {"no_slip_margin_N", 1}};
-#define SHOWN 27
+             {"no_slip_margin_N", 1}, {"wheel_load_N", 4}};
+#define SHOWN 31
 
 static void read_shown(double values[SHOWN]) {
     size_t used = 0;

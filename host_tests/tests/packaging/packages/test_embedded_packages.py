@@ -42,18 +42,36 @@ def folder(tool: str) -> Path:
     return built(f"packages/embedded/{FOLDERS[tool]}")
 
 
+def headers(tool: str) -> Path:
+    return folder(tool) / ("src" if tool == "arduino" else "include")
+
+
 def text(tool: str, name: str) -> str:
     return (folder(tool) / name).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("tool", FOLDERS)
 def test_a_package_holds_the_two_files_the_licence_and_no_gap_of_a_template(tool):
-    files = {path.name: path for path in folder(tool).rglob("*") if path.is_file()}
+    files = [path for path in folder(tool).rglob("*") if path.is_file()]
     for name in ("laconic.h", "laconic.c", "laconic_single.h", "laconic_single.c"):
-        assert files[name].read_bytes() == built(f"amalgamation/{name}").read_bytes()
-    assert files["LICENSE"].read_bytes() == (SOURCE_DIR / "LICENSE").read_bytes()
-    others = [path.read_text(encoding="utf-8") for name, path in files.items() if not name.startswith("laconic")]
+        where = headers(tool) if name.endswith(".h") else folder(tool) / "src"
+        assert (where / name).read_bytes() == built(f"amalgamation/{name}").read_bytes()
+    assert (folder(tool) / "LICENSE").read_bytes() == (SOURCE_DIR / "LICENSE").read_bytes()
+    others = [path.read_text(encoding="utf-8") for path in files if not path.name.startswith("laconic")]
     assert [found for each in others for found in re.findall(r"@[a-z_]+@", each)] == []
+
+
+@pytest.mark.parametrize("tool", FOLDERS)
+def test_the_readmes_example_compiles_by_its_own_include_and_by_the_packages(tool, tmp_path):
+    example = re.findall(r"```c\n(.*?)```", (SOURCE_DIR / "README.md").read_text("utf-8"), re.DOTALL)[0]
+    assert example.startswith("#include <laconic/laconic.h>")
+    both = "#include <laconic/laconic_single.h>\n#include <laconic_single.h>\n#include <laconic.h>\n"
+    (tmp_path / "program.c").write_text(both + example, encoding="utf-8")
+    sources = [folder(tool) / "src" / name for name in ("laconic.c", "laconic_single.c")]
+    subprocess.run(["cc", "-O0", "-Wall", "-Wextra", "-Werror", f"-I{headers(tool)}", tmp_path / "program.c", *sources,
+                    "-o", tmp_path / "program"], check=True)
+    done = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("after 2 s at x = 0.230 m")
 
 
 @pytest.mark.parametrize("tool", FOLDERS)
@@ -188,7 +206,7 @@ def compiled_core(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_its_example_compiles_for_a_cortex_m4f_and_links_or_names_only_what_the_framework_has(
         tool, compiled_core, tmp_path):
     (tmp_path / "Arduino.h").write_text(STUB_OF_ARDUINO, encoding="utf-8")
-    source, include = folder(tool) / EXAMPLES[tool], folder(tool) / ("src" if tool == "arduino" else "include")
+    source, include = folder(tool) / EXAMPLES[tool], headers(tool)
     how = ["arm-none-eabi-g++", "-std=gnu++17", "-x", "c++", "-include", str(tmp_path / "Arduino.h")] \
         if tool == "arduino" else ["arm-none-eabi-gcc", "-std=gnu17"]
     subprocess.run([*how, *ARM, f"-I{include}", "-c", str(source), "-o", str(tmp_path / "main.o")], check=True)

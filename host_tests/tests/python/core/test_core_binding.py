@@ -72,9 +72,9 @@ def test_a_scalar_type_that_there_is_not():
     ({"wheel": [WHEEL, {**WHEEL, "y_m": math.inf}]}, "not finite", "wheel_y_m", 2, "vehicle.wheel[2].y_m: "),
     ({"wheel": 17 * [WHEEL]}, "too many wheels", "wheel_count", 0, "vehicle.wheel: "),
     ({"wheel": [{**WHEEL, "kind": "fixed", "locked": True}, {**WHEEL, "kind": "fixed", "x_m": 1.0, "axle_rad": 1.5}]},
-     "nothing moves", "wheel_kind", 0, "vehicle.wheel.kind: "),
+     "nothing moves", "wheel_kind", 2, "vehicle.wheel[2].kind: "),
     ({"wheel": [{**WHEEL, "kind": "fixed", "y_m": y_m} for y_m in (-0.2, 0.2)]},
-     "straight only", "wheel_kind", 0, "vehicle.wheel.kind: ")])
+     "straight only", "wheel_kind", 2, "vehicle.wheel[2].kind: ")])
 def test_a_refusal_arrives_with_status_field_item_and_the_words_of_a_scene(core, changes, status, field, item, place):
     found = refused(core, **changes)
     assert (found.status, found.field, found.item) == (status, field, item)

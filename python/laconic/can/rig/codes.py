@@ -43,9 +43,9 @@ class Codes:
         self._lib.laconic_gate_sent(self._gate, self._frame.put(message))
 
     def behind(self, message: can.Message) -> can.Message | None:
-        """The frame that must follow one of the rig; None where none must. Refuses a frame without a code."""
+        """The frame that must follow one of the rig; None where none must. Refuses where no code is left."""
         frame = self._frame.put(message)
         if self._lib.laconic_gate_is_spent(self._gate, frame):
-            raise ResultFails("the codes of this session are used up after 4294967295 frames; connect again for others")
+            raise ResultFails("the codes of this session are used up after 4294967295 frames; connect again")
         made = self._lib.laconic_gate_seal(self._gate, frame, self._code.c)
         return self._code.message() if made else None

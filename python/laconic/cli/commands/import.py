@@ -58,7 +58,7 @@ def command(robot: Path, out: Path, wheels: tuple[str, ...], rollers: tuple[str,
                                "assumptions": found.assumptions, "remarks": found.remarks,
                                "standing": found.standing.as_json()}, indent=1, ensure_ascii=False))
         return
-    for line in (*found.wheels, *found.supports, *found.assumptions, *found.remarks):
+    for line in (*found.wheels, *found.supports, found.standing.in_words(), *found.assumptions, *found.remarks):
         click.echo(line, err=is_stdout(out))
 
 

@@ -16,6 +16,7 @@ from laconic.robot.importer.axle_lines import brought_to_meet, straightened
 from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
 from laconic.robot.importer.dropped import drives_elsewhere, dropped_of, idle_of
 from laconic.robot.importer.formats import read_robot
+from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.plausible import doubts_of
 from laconic.robot.importer.push import (
     ACCELERATION_M_PER_S2,
@@ -56,7 +57,7 @@ MOTOR = ("# The file does not tell the motors. With them, voltage_V[i] drives wh
 GEAR = "#   gear_ratio = …"
 DAMPED = ("#   viscous_friction_Nms = …      # the motor_damping_Nms below, divided by gear_ratio²",
           "# [vehicle.motor] takes the place of every motor_gain_Nm_per_V and motor_damping_Nms: take these lines out.")
-LOADS = ("normal_load_N", "support_load_N")  # outputs where friction makes them matter
+LOADS = ("wheel_load_N", "support_load_N")  # outputs where friction makes them matter
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ class _Writer:
             self.comments["vehicle", "support", str(index), "x_m"] = f"{each.why}; carries {standing.share(load_N)}"
         comments = {where: in_one_line(why) for where, why in self.comments.items()}
         text = "\n".join([*map(in_one_line, self.head()), *lines_of(data, comments)]) + "\n"
-        words, remarks = tuple(map(in_one_line, self.words(standing))), tuple(map(in_one_line, self.remarks))
+        words, remarks = tuple(map(in_one_line, self.words())), tuple(map(in_one_line, self.remarks))
         supports = tuple(in_one_line(each) for each in self.words_of_supports(standing))
         return Imported(self.robot.name, text, words, tuple(map(in_one_line, assumed)), remarks, supports, standing)
 
@@ -142,7 +143,9 @@ class _Writer:
     def remark_standing(self, scene: Scene, standing: Standing) -> None:
         """Says what tips the robot, and that plain wheels leave it a rotation alone."""
         if standing.tips:
-            self.remarks.append(f"the robot: {standing.tips}")
+            unread = [link.name for link in self.robot.links.values() if link.unread]
+            hint = f"; meshes of {listed(unread)} were not read, and may touch the ground" if unread else ""
+            self.remarks.append(f"the robot: {standing.tips}{hint}")
         if scene.model(scene.core()).dof == 1 and not self.answers.friction_coefficient:
             self.remarks.append("plain wheels on these axles leave the robot one motion alone, a rotation about the "
                                 f"point where the axles meet{self.meeting()}")
@@ -323,12 +326,11 @@ class _Writer:
             return f"with about {ACCELERATION_M_PER_S2:g} m/s² for {PUSH_S:g} s"
         return f"for {PUSH_S:g} s and reach {found.speed_m_per_s:.2g} m/s, as wheels slip"
 
-    def words(self, standing: Standing) -> list[str]:
+    def words(self) -> list[str]:
         """A line for each wheel."""
         return [f"wheel {index + 1}: {wheel.name}, {kind.kind}"
                 + (f" with rollers at {kind.roller_deg:.4g}°" if kind.roller_deg is not None else "")
-                + f", radius {wheel.radius_m:.4g} m at {_place(wheel)} m; {kind.why}; carries "
-                + standing.share(standing.wheel_N[index])
+                + f", radius {wheel.radius_m:.4g} m at {_place(wheel)} m; {kind.why}"
                 for index, (wheel, kind) in enumerate(zip(self.ground.wheels, self.kinds, strict=True))]
 
     def words_of_supports(self, standing: Standing) -> list[str]:

@@ -73,6 +73,11 @@ class MeshFiles:
         """Those of these that could not be had, each once, and why."""
         return tuple(f"{uri or '<mesh>'} ({self.missing[uri]})" for uri in dict.fromkeys(uris) if uri in self.missing)
 
+    def lacks(self, name: str, why: str, unread: list[str]) -> None:
+        """Notes a shape that is left out."""
+        self.missing.setdefault(name, why)
+        unread.append(name)
+
     def remarks(self) -> tuple[str, ...]:
         """What could not be had, in one line."""
         if not self.missing:

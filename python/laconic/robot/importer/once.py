@@ -14,20 +14,27 @@ ONCE = frozenset({"inertial", "mass", "inertia", "origin", "pose", "geometry", "
                   "ixx", "ixy", "ixz", "iyy", "iyz", "izz", *SHAPES})
 
 
-FOREIGN = ("gazebo", "sensor", "plugin")  # what others read
+FOREIGN = ("gazebo", "sensor", "plugin", "visual")  # what others read, or what is left out where it is doubled
 
 
 def refuse_doubled(path: Path, part: Element) -> None:
     """BadInput with the name of a link or joint in which one of these stands twice."""
-    where, waiting = f"{path}: {part.tag} {part.get('name', '')}", [part]
+    if doubled := what_is_doubled(part):
+        raise BadInput(f"{path}: {part.tag} {part.get('name', '')}: {doubled}")
+
+
+def what_is_doubled(part: Element) -> str:
+    """What stands twice in an element, and what to do; empty where nothing does."""
+    waiting = [part]
     while waiting:
         element = waiting.pop()
         tags = Counter(child.tag for child in element)
         for tag, count in tags.items():
             if count > 1 and tag in ONCE:
-                raise BadInput(f"{where}: <{element.tag}> has {count} <{tag}>; keep the one that holds")
+                return f"<{element.tag}> has {count} <{tag}>; keep the one that holds"
         shapes = [tag for tag in tags if tag in SHAPES] if element.tag == "geometry" else []
         if len(shapes) > 1:
-            raise BadInput(f"{where}: one <geometry> has <{shapes[0]}> and <{shapes[1]}>; give each shape a "
-                           "<collision> or <visual> of its own")
+            return (f"one <geometry> has <{shapes[0]}> and <{shapes[1]}>; give each shape a <collision> or <visual> of "
+                    "its own")
         waiting += [child for child in element if child.tag not in FOREIGN]
+    return ""

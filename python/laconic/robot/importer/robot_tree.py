@@ -19,6 +19,8 @@ HINGE, SLIDE, FIXED, BALL = "hinge", "slide", "fixed", "ball"
 TURNS_ROUND_RAD = 4.0 * np.pi  # a hinge with a wider range than this counts as one without limits
 LONGEST_SHOWN = 60  # of a name in a message
 MOST_LINKS = 5000  # ten times the largest robots, with every roller of their wheels a link
+ALIGNED = np.cos(np.radians(1.0))  # what is less is rounding in a file, such as 1.57 for a right angle
+TILT = np.sin(np.radians(0.2))  # the same of a face on the ground
 CORNERS = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
 
 
@@ -64,17 +66,19 @@ class Shape:
         """The largest distance of its surface from a line through `point` along the unit vector `axis`."""
         if self.kind == "sphere":
             return float(_distances(self.placed[None, :3, 3], point, axis)[0] + self.size[0])
-        if self.kind == "cylinder" and abs(self.placed[:3, 2] @ axis) > 1.0 - 1e-9:
+        if self.kind == "cylinder" and abs(self.placed[:3, 2] @ axis) > ALIGNED:
             return float(_distances(self.placed[None, :3, 3], point, axis)[0] + self.size[0])
         return float(_distances(self.outline(), point, axis).max())
 
     def lowest(self) -> Array:
-        """Its lowest point, in the middle of those that are equally low."""
+        """Its lowest point, in the middle of those that are equally low but for rounding of its tilt."""
         if self.kind == "sphere":
             return np.asarray(self.placed[:3, 3] - [0.0, 0.0, self.size[0]])
         points = self.outline()
-        low = points[points[:, 2] < points[:, 2].min() + 1e-6]
-        return np.asarray((low.min(axis=0) + low.max(axis=0)) / 2.0)
+        lowest = points[:, 2].min()
+        low = points[points[:, 2] <= lowest + 1e-6 + TILT * float(np.ptp(points[:, :2], axis=0).max())]
+        x, y, _ = (low.min(axis=0) + low.max(axis=0)) / 2.0
+        return np.array([x, y, lowest])
 
     def across(self, point: Array, axis: Array) -> Array:
         """N × 2 points of its outline, seen along the unit vector `axis` from `point`; of a sphere that of its largest

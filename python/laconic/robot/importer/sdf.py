@@ -24,7 +24,7 @@ from laconic.robot.importer.checked import (
 from laconic.robot.importer.commands import commands_of, with_mimics
 from laconic.robot.importer.gravity import gravity_left_out, listed
 from laconic.robot.importer.meshes import MeshFiles
-from laconic.robot.importer.once import refuse_doubled
+from laconic.robot.importer.once import refuse_doubled, what_is_doubled
 from laconic.robot.importer.placement import (
     IDENTITY,
     Array,
@@ -50,6 +50,7 @@ from laconic.robot.importer.robot_tree import (
     check_count,
     mimics,
 )
+from laconic.robot.importer.sdf_tree import tree_of
 from laconic.robot.importer.surfaces import surface_of
 from laconic.robot.importer.xml_file import Element, bytes_of, root_of
 
@@ -60,6 +61,9 @@ USUAL_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.8)  # of the format, where a file gives n
 LIMITS = {"limit/effort": "effort limit {:g} N·m", "limit/velocity": "speed limit {:g} rad/s",
           "dynamics/spring_stiffness": "spring of {:g} N·m/rad"}
 NO_LIMIT = 1e15  # what the format has for one that is not given is larger
+TWO_AXES = ("universal", "revolute2")
+FIRST, SECOND = "axis", "axis2"
+OLD_AXES = ("1.0", "1.1", "1.2", "1.3", "1.4")  # versions in which axes are in the frame of the model
 VERSIONS = [f"1.{minor}" for minor in range(13)]
 
 
@@ -70,7 +74,9 @@ def read_sdf(path: Path, packages: Mapping[str, Path], model_name: str | None) -
     root = root_of(path, text, "is no XML")
     model, remarks = _model(path, root, model_name)
     with MeshFiles(path, packages) as files:
-        return _Model(path, model, files, gravity_of(path, root, model), remarks).robot()
+        made = _Model(path, model, files, gravity_of(path, root, model), remarks)
+        made.has_old_axes = root.get("version", VERSIONS[-1]) in OLD_AXES
+        return made.robot()
 
 
 def _model(path: Path, root: Element, name: str | None) -> tuple[Element, list[str]]:
@@ -139,11 +145,25 @@ class _Model:
         self.links = {self._name(each): each for each in model.findall("link")}
         self.joints = {self._name(each): each for each in model.findall("joint") if not self._is_of_nested(each)}
         frames = {self._name(each): each for each in model.findall("frame")}
-        self.frames = {**self.links, **frames, **self.joints}
-        if len(self.frames) < len(self.links) + len(frames) + len(self.joints):
-            raise BadInput(f"{path}: two links, joints or frames have one name; give each its own")
+        self._check_names(frames)
+        self.taken = {*self.links, *frames}
+        self.frames = {**{self._frame_of(name): each for name, each in self.joints.items()}, **frames, **self.links}
         self.placed: dict[str, Array] = {"__model__": IDENTITY}
+        self.has_old_axes = False
         self.back = IDENTITY  # from the frame of the model to that of the base, once it is known
+
+    def _check_names(self, frames: Mapping[str, Element]) -> None:
+        """BadInput for two of one kind that have one name. Older files have joints that are called as links."""
+        for tag, named in (("link", self.links), ("joint", self.joints), ("frame", frames)):
+            every = [each for each in self.model.findall(tag) if tag != "joint" or not self._is_of_nested(each)]
+            if len(named) < len(every):
+                raise BadInput(f"{self.path}: two {tag}s have one name; give each its own")
+        if set(frames) & set(self.links):
+            raise BadInput(f"{self.path}: two links, joints or frames have one name; give each its own")
+
+    def _frame_of(self, joint: str) -> str:
+        """The name of a joint's frame: the joint's own, unless a link has it."""
+        return f"{joint} (joint)" if joint in self.taken else joint
 
     def _nested(self) -> list[str]:
         """A remark on models inside; BadInput for one with joints that move, whose wheels would be missed."""
@@ -195,27 +215,44 @@ class _Model:
         for name in self.frames:
             self.frame(name)  # also one that nothing stands in must be somewhere
         ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()}
-        real = {name: end for name, end in ends.items() if end[0] != "world"}
-        base = base_of(self.path, self.links, [child for _, child in real.values()])
+        tree = tree_of(self.links, {name: end for name, end in ends.items() if "world" not in end})
+        real = tree.ends
+        base = base_of(self.path, tree.links, [child for _, child in real.values()])
         back = self.back = inverse(self.frame(base))
-        links = {name: self._link(name, back) for name in self.links}
+        links = {name: self._link(name, back) for name in tree.links}
         masters = {name: mimic.get("joint", "") for name in real
                    if (mimic := self.joints[name].find("axis/mimic")) is not None}
         commands = with_mimics(commands_of(self.model, real), masters)
-        joints = {name: self._joint(name, *real[name], back, commands.get(name, ())) for name in real}
+        joints: dict[str, Joint] = {}
+        for name, (parent, child) in real.items():
+            between = self._between(name, back)
+            if between:
+                links[between.name] = between
+                second = f"{name} ({SECOND})"
+                joints[second] = self._joint(name, between.name, child, back, commands.get(name, ()), SECOND)
+            joints[name] = self._joint(name, parent, between.name if between else child, back, commands.get(name, ()))
         title = self.model.get("name") or self.path.stem
         weightless = [name for name, each in self.links.items() if (_text(each, "gravity") or "") in ("0", "false")]
-        remarks = (*self.remarks, *self.files.remarks(), *mimics(self.path, masters, joints),
+        remarks = (*self.remarks, *tree.remarks, *self.files.remarks(), *mimics(self.path, masters, joints),
                    *gravity_left_out(self.gravity_m_per_s2, weightless))
         return Robot(title, self.path, "SDF", base, links, joints, remarks).check()
+
+    def _between(self, name: str, back: Array) -> Link | None:
+        """A link without mass between the two axes of a joint, such as that of a steered wheel."""
+        element = self.joints[name]
+        if element.get("type") not in TWO_AXES or element.find(SECOND) is None:
+            return None
+        return Link(f"{name} ({element.get('type')})", com_m=point_of(back @ self.frame(self._frame_of(name))))
 
     def _link(self, name: str, back: Array) -> Link:
         element, where = self.links[name], f"{self.path}: link {name}"
         frame = back @ self.frame(name)
-        shapes = tuple(shape for tag in ("collision", "visual") for part in element.findall(tag)
-                       if (shape := self._shape(f"{where}: geometry", part, frame, tag == "collision")))
-        unread = self.files.unread(_uris(element, "visual", "collision"))
-        lacks_shape = bool(self.files.unread(_uris(element, "collision")))
+        unseen: dict[bool, list[str]] = {True: [], False: []}
+        shapes = tuple(shape for tag, collides in (("collision", True), ("visual", False))
+                       for part in element.findall(tag)
+                       if (shape := self._shape(where, part, frame, collides, unseen[collides])))
+        unread = self.files.unread((*unseen[True], *unseen[False]))
+        lacks_shape = bool(self.files.unread(unseen[True]))
         inertial = element.find("inertial")
         if inertial is None:
             return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread,
@@ -229,11 +266,16 @@ class _Model:
         return Link(name, kg, point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread,
                     unread_collides=lacks_shape)
 
-    def _shape(self, where: str, part: Element, frame: Array, collides: bool) -> Shape | None:
+    def _shape(self, where: str, part: Element, frame: Array, collides: bool, unread: list[str]) -> Shape | None:
+        """None for a shape that cannot be had; its name is added to `unread`."""
         geometry = part.find("geometry")
         solid = next(iter(geometry), None) if geometry is not None else None
-        if solid is None:
+        if solid is None or solid.tag == "empty":
             return None
+        if doubled := what_is_doubled(part):
+            self.files.lacks(f"<{part.tag}> of {where.partition(': ')[2]}", doubled.partition(";")[0], unread)
+            return None
+        where = f"{where}: geometry"
         placed = frame @ _placement(where, part.find("pose"))
         surface = self._surface(part, placed) if collides else None
         if solid.tag in ("cylinder", "capsule"):
@@ -245,8 +287,13 @@ class _Model:
         if solid.tag == "box":
             half = sizes(where, (_text(solid, "size") or "").split()) / 2.0
             return Shape.box(placed, half, collides, surface)
-        points = self.files.points(_text(solid, "uri") or "") if solid.tag == "mesh" else None
+        if solid.tag != "mesh":
+            self.files.lacks(f"<{solid.tag}>", "is no shape that is known", unread)
+            return None
+        name = _text(solid, "uri") or ""
+        points = self.files.points(name)
         if points is None:
+            unread.append(name)
             return None
         scale = np.array(finite(where, (_text(solid, "scale") or "1 1 1").split(), 3))
         return Shape("mesh", placed, points=point_of(placed, points * scale), collides=collides, surface=surface)
@@ -260,13 +307,16 @@ class _Model:
 
         return surface_of(collision.find("surface/friction/ode"), ("mu", "mu2"), turned)
 
-    def _joint(self, name: str, parent: str, child: str, back: Array, commands: Sequence[Command]) -> Joint:
+    def _joint(self, name: str, parent: str, child: str, back: Array, commands: Sequence[Command], which: str = FIRST
+               ) -> Joint:
         element, where = self.joints[name], f"{self.path}: joint {name}"
         kind = KINDS.get(element.get("type", ""))
+        if kind is BALL and element.get("type") in TWO_AXES and element.find(SECOND) is not None:
+            kind = HINGE
         if kind is None:
             raise BadInput(f"{where}: type {element.get('type')} is not known; known are {', '.join(KINDS)}")
-        frame, axis = back @ self.frame(name), np.zeros(3)
-        given = element.find("axis")
+        frame, axis = back @ self.frame(self._frame_of(name)), np.zeros(3)
+        given = element.find(which)
         if kind in (HINGE, SLIDE):
             xyz = given.find("xyz") if given is not None else None
             direction = unit_vector(where, (xyz.text or "").split() if xyz is not None else [0.0, 0.0, 1.0])
@@ -276,30 +326,27 @@ class _Model:
         range_rad = _range(where, element, given)
         left_out = [words.format(value) for key, words in LIMITS.items()
                     if 0.0 < (value := read_number(_text(given, key)) or 0.0) < NO_LIMIT]
-        return Joint(name, kind, parent, child, point_of(frame), axis, range_rad < TURNS_ROUND_RAD, damping, friction,
+        shown = name if which == FIRST else f"{name} ({which})"
+        return Joint(shown, kind, parent, child, point_of(frame), axis, range_rad < TURNS_ROUND_RAD, damping, friction,
                      range_rad, commands=tuple(commands), left_out=tuple(left_out))
 
     def _turn_of_axis(self, given: Any, xyz: Any, frame: Array, back: Array) -> Array:
         """The axes that the axis is given in: the joint's, if the file does not say another."""
         if xyz is not None and xyz.get("expressed_in"):
             return np.asarray((back @ self.frame(xyz.get("expressed_in")))[:3, :3])
-        if given is not None and (_text(given, "use_parent_model_frame") or "").strip() in ("1", "true"):
+        usual = "true" if self.has_old_axes else ""
+        if given is not None and (_text(given, "use_parent_model_frame") or usual) in ("1", "true"):
             return np.asarray(back[:3, :3])
         return np.asarray(frame[:3, :3])
 
 
 def _range(where: str, joint: Element, axis: Element | None) -> float:
     """Between the limits of a hinge."""
-    if joint.get("type") != "revolute" or axis is None or axis.find("limit") is None:
+    if joint.get("type") not in ("revolute", *TWO_AXES) or axis is None or axis.find("limit") is None:
         return np.inf
     lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2,
                           largest=np.inf)
     return upper - lower
-
-
-def _uris(link: Element, *tags: str) -> list[str | None]:
-    """The meshes of its shapes."""
-    return [each.text for tag in tags for part in link.findall(tag) for each in part.iter("uri")]
 
 
 def _bound(axis: Element, end: str, usual: float) -> Any:

@@ -13,7 +13,7 @@ from laconic.robot.importer.steering import NEAR, Swivel
 from laconic.robot.importer.wheels import FoundWheel, Ground
 
 MOVES = {SLIDE: "shifts and does not turn", BALL: "turns about every axis"}
-TOUCHES = 0.05  # of the smallest wheel's radius above or below the ground
+TOUCHES, TOUCHES_M = 0.05, 3e-3  # of the smallest wheel's radius above the ground, or so far
 BELOW = 0.2
 BESIDE = 0.5  # of a wheel's radius: how far what belongs to a wheel reaches beside it
 THIN, THIN_M = 0.05, 2e-3  # of the smallest wheel's radius, or of any: a marker
@@ -42,8 +42,8 @@ def find_supports(robot: Robot, ground: Ground) -> tuple[list[Support], list[str
     for link in robot.links.values():
         if link.name in turning:
             continue
-        touching = [shape for shape in link.shapes
-                    if -BELOW * smallest <= shape.lowest()[2] - ground.height_m <= TOUCHES * smallest]
+        touching = [shape for shape in link.shapes if -BELOW * smallest <= shape.lowest()[2] - ground.height_m
+                    <= max(TOUCHES * smallest, TOUCHES_M)]
         if not touching:
             continue
         carrying = [shape for shape in touching if not _why_none(link, shape, ground, smallest)]

@@ -27,7 +27,7 @@ from laconic.robot.importer.checked import (
 )
 from laconic.robot.importer.commands import commands_of, with_mimics
 from laconic.robot.importer.meshes import MeshFiles
-from laconic.robot.importer.once import refuse_doubled
+from laconic.robot.importer.once import refuse_doubled, what_is_doubled
 from laconic.robot.importer.placement import IDENTITY, Array, placement, point_of, rotation_of_rpy
 from laconic.robot.importer.robot_tree import (
     BALL,
@@ -182,6 +182,9 @@ def _shape(where: str, part: Element, frame: Array, files: MeshFiles, collides: 
     solid = next(iter(geometry), None) if geometry is not None else None
     if solid is None:
         return None
+    if doubled := what_is_doubled(part):
+        files.lacks(f"<{part.tag}> of {where.partition(': ')[2]}", doubled.partition(";")[0], unread)
+        return None
     placed, where = frame @ _origin(f"{where}: <{part.tag}>", part), f"{where}: geometry"
     if solid.tag in ("cylinder", "capsule"):
         radius, length = (size(where, key, _attribute(where, solid, key)) for key in ("radius", "length"))
@@ -193,8 +196,7 @@ def _shape(where: str, part: Element, frame: Array, files: MeshFiles, collides: 
         half = sizes(where, _vector(where, solid, "size")) / 2.0
         return Shape.box(placed, half, collides, surface)
     if solid.tag != "mesh":
-        files.missing.setdefault(f"<{solid.tag}>", "is no shape that is known")
-        unread.append(f"<{solid.tag}>")
+        files.lacks(f"<{solid.tag}>", "is no shape that is known", unread)
         return None
     name = solid.get("filename") or ""
     points = files.points(name)

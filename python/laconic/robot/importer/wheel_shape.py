@@ -64,6 +64,14 @@ def reach_of(robot: Robot, joint: Joint) -> Reach | None:
     return Reach(radius) if off <= CENTRED_M else Reach(own, off)
 
 
+def skew_of(robot: Robot, joint: Joint) -> float:
+    """The angle of the only shape, a cylinder, to the axle; 0 where there is another shape."""
+    shapes = chosen_shapes(robot.below(joint, rigid=True))
+    if len(shapes) != 1 or shapes[0].kind != "cylinder":
+        return 0.0
+    return float(np.arccos(min(1.0, abs(shapes[0].placed[:3, 2] @ joint.axis))))
+
+
 def enclosing_circle(points: Array) -> tuple[Array, float]:
     """Middle and radius of the smallest circle around N × 2 points: that of a few of them, to which the farthest point
     outside is added until none is."""

@@ -15,12 +15,13 @@ from laconic.robot.importer.robot_tree import HINGE, SLIDE, Joint, Link, Robot, 
 from laconic.robot.importer.steering import Swivel, is_upright, swivel_of, turntables
 from laconic.robot.importer.surfaces import is_frictionless
 from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
-from laconic.robot.importer.wheel_shape import Reach, chosen_shapes, reach_of
+from laconic.robot.importer.wheel_shape import Reach, chosen_shapes, reach_of, skew_of
 
 OF_PACKAGES = ("package://", "model://")
 MOST_NAMED = 3  # meshes in a message
 LEVEL = np.sin(np.radians(10.0))  # the steepest axle of a wheel
 CAMBER = np.sin(np.radians(0.2))  # what is less is rounding
+SKEW = np.radians(45.0)  # of a cylinder to the axle: it is not that of a wheel
 PLACE_DIGITS = 4  # wheels nearer than a tenth of a millimetre are in one place
 REACHES = 0.05  # of the radius above the ground, at most
 
@@ -118,12 +119,27 @@ def _measured(robot: Robot, candidates: Sequence[Joint], answers: Answers, are_n
               ) -> tuple[list[tuple[Joint, Reach | None]], list[str]]:
     """Each with its radius, but those that swing as an arm does, which the remarks name."""
     measured = [(joint, _reach_of(robot, joint, answers)) for joint in candidates]
-    swinging = [] if are_named else [joint for joint, reach in measured if reach and reach.swings]
-    if len(swinging) == len(measured):
-        swinging = []  # there is nothing else
-    remarks = [f"joint {joint.name} turns on a level axle, and its shapes lie off it, so it is no wheel; --wheel JOINT "
-               "for each wheel would say otherwise" for joint in swinging]
-    return [(joint, reach) for joint, reach in measured if joint not in swinging], remarks
+    no_wheels = {} if are_named else {joint: why for joint, reach in measured if (why := _no_wheel_by_shape(
+        robot, joint, reach, answers))}
+    if len(no_wheels) == len(measured) and no_wheels:
+        (joint, why), *_ = no_wheels.items()
+        names = ", ".join(each.name for each in [*no_wheels][:6])
+        raise BadInput(f"{robot.path}: there is no wheel: joint {joint.name} turns on a level axle, {why}; so it is "
+                       f"for all that do ({names}); see <axis> and <origin>, or give --wheel JOINT for each wheel")
+    remarks = [f"joint {joint.name} turns on a level axle, {why}, so it is no wheel; --wheel JOINT for each wheel "
+               "would say otherwise" for joint, why in no_wheels.items()]
+    return [(joint, reach) for joint, reach in measured if joint not in no_wheels], remarks
+
+
+def _no_wheel_by_shape(robot: Robot, joint: Joint, reach: Reach | None, answers: Answers) -> str:
+    """Why what turns about an axle is no wheel; empty where it may be one, or where the user says its radius."""
+    if reach is None or answer(answers.radius_m, joint.name) is not None:
+        return ""
+    if reach.swings:
+        return "and its shapes lie off it"
+    if (skew := skew_of(robot, joint)) > SKEW:
+        return f"and its cylinder lies {_degrees(skew)} from it"
+    return ""
 
 
 def _check_known(robot: Robot, measured: Sequence[tuple[Joint, Reach | None]]) -> None:
@@ -156,8 +172,9 @@ def _apart(found: Sequence[FoundWheel], answers: Answers, are_named: bool
 
 def _all_swivel(casters: Sequence[FoundWheel]) -> str:
     """Why no wheel is left, and what to do."""
-    why = ", ".join(f"{each.name} {'is steered' if each.is_steered else 'swivels freely'} by {each.swivel.name} "
-                    f"({each.swivel.why})" for each in casters[:6] if each.swivel)
+    by_swivel = {each.swivel.name: each for each in casters if each.swivel}
+    why = ", ".join(f"{each.name} {'is steered by' if each.is_steered else 'swivels freely about'} {name} "
+                    f"({each.swivel.why})" for name, each in [*by_swivel.items()][:MOST_NAMED] if each.swivel)
     return (f"all wheels swivel ({', '.join(each.name for each in casters)}): {why}; steering is not modelled; give "
             "--wheel JOINT for those that are held")
 
@@ -233,7 +250,13 @@ def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
                and abs(joint.axis[2]) <= LEVEL]
     seen = f" ({', '.join(limited[:6])}: within limits)" if limited else ""
     return (f"no joint turns round on a level axle (continuous, z up){seen}, so there is no wheel; give --wheel JOINT "
-            "for each joint that is one")
+            f"for each joint that is one{_inside(robot)}")
+
+
+def _inside(robot: Robot) -> str:
+    """What of the file is not read and may have wheels."""
+    left_out = [each for each in robot.remarks if each.startswith(("<include>", "<model>"))]
+    return f"; {left_out[0]}" if left_out else ""
 
 
 def _unread(robot: Robot, joints: Sequence[Joint]) -> str:

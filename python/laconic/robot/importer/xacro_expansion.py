@@ -6,6 +6,7 @@ import re
 import sys
 import types
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from xml.parsers.expat import ExpatError
@@ -77,6 +78,7 @@ PATTERNS = (  # of what xacro says, and what we say
     (r"Undefined property to forward: (.*)", "the property {0} is not defined"),
     (r"circular variable definition: (.*)", "properties are defined by each other: {0}"),
     (r'Xacro conditional "(.*)" evaluated to .*', "the condition {0} is neither true nor false"),
+    (r"macro names must not contain '\.' .*: (.*)", "{0} is no name for a macro"),
     (r"Property names must be valid python identifiers: (.*)", "{0} is no name for a property"),
     (r"(\S+): missing attribute '(.*)'", "<{0}> lacks the attribute {1}"),
     (r"Unknown substitution command \[(.*)\].*", "$({0}) is not known"))
@@ -109,12 +111,23 @@ def _words_of_expression(causes: Sequence[BaseException]) -> str:
     where = f"the expression ${{{expression}}}" if expression else "an expression"
     for cause in reversed(causes):
         if isinstance(cause, NameError) and cause.name:
-            return f"{where} uses {cause.name}, which is not defined"
+            return f"{where} uses {cause.name}, which is not defined{_old_definition(cause.name)}"
         if isinstance(cause, ZeroDivisionError):
             return f"{where} divides by 0"
         if isinstance(cause, SyntaxError):
             return f"{where} is not written as one"
     return f"{where} cannot be evaluated" if expression else "a part of it is not as xacro expects"
+
+
+def _old_definition(name: str) -> str:
+    """A file that was read and defines a property as the first versions of xacro did."""
+    import xacro
+
+    for file in dict.fromkeys(each for each in (*(xacro.all_includes or ()), *(xacro.filestack or ())) if each):
+        with suppress(OSError, UnicodeDecodeError, ValueError):
+            if re.search(rf'<property\s[^>]*name="{re.escape(name)}"', Path(file).read_text(encoding="utf-8")):
+                return f" as {file} writes <property> for <xacro:property>"
+    return ""
 
 
 def _first(error: BaseException) -> str:
