@@ -130,8 +130,8 @@ int main(void) {
     printf("%s precision\n", LACONIC_REAL_NAME);
     const population mixed = population_of("auto, 10,000 mixed", &laconic_auto, 10000, 10000, 400.0);
     if (mixed.kind[0].integrator.chosen == mixed.kind[1].integrator.chosen) return 2; /* it would not be mixed */
-    measure(population_of("rk4, one kind", &laconic_rk4, 1000, 1, 1.0));
-    measure(population_of("rk4, each its own", &laconic_rk4, 1000, 1000, 1.0));
+    measure(population_of("explicit, one kind", &laconic_rk4, 1000, 1, 1.0));
+    measure(population_of("explicit, each its own", &laconic_rk4, 1000, 1000, 1.0));
     measure(population_of("auto, one kind", &laconic_auto, 1000, 1, 1.0));
     measure(mixed);
     return 0;

@@ -80,7 +80,7 @@ static void logger_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status s, 
 static void start_2(const char *path) {
     static const fmi2CallbackFunctions callbacks = {logger_2, calloc, free, NULL, NULL};
     const fmi2ValueReference method = 29, friction = FRICTION;
-    const fmi2Integer rk4 = METHOD_RK4;
+    const fmi2Integer number = METHOD_RK4;
     void *library = load(path);
     fmi2InstantiateTYPE *instantiate;
     fmi2EnterInitializationModeTYPE *enter;
@@ -95,7 +95,7 @@ static void start_2(const char *path) {
     LOAD(two.step, library, "fmi2DoStep");
     two.c = instantiate("bench", fmi2CoSimulation, fmu_token_2, NULL, &callbacks, fmi2False, fmi2False);
     must(two.c == NULL, "fmi2Instantiate");
-    must((int)set_integer(two.c, &method, 1, &rk4), "fmi2SetInteger");
+    must((int)set_integer(two.c, &method, 1, &number), "fmi2SetInteger");
     must((int)two.set(two.c, &friction, 1, &unwatched), "fmi2SetReal");
     must((int)enter(two.c), "fmi2EnterInitializationMode");
     must((int)leave(two.c), "fmi2ExitInitializationMode");
@@ -131,7 +131,7 @@ static void logger_3(fmi3InstanceEnvironment e, fmi3Status s, fmi3String categor
 
 static void start_3(const char *path) {
     const fmi3ValueReference method = 29, friction = FRICTION;
-    const fmi3Int64 rk4 = METHOD_RK4;
+    const fmi3Int64 number = METHOD_RK4;
     void *library = load(path);
     fmi3InstantiateCoSimulationTYPE *instantiate;
     fmi3EnterInitializationModeTYPE *enter;
@@ -146,7 +146,7 @@ static void start_3(const char *path) {
     LOAD(three.step, library, "fmi3DoStep");
     three.c = instantiate("bench", fmu_token_3, NULL, false, false, false, false, NULL, 0, NULL, logger_3, NULL);
     must(three.c == NULL, "fmi3Instantiate");
-    must((int)set_integer(three.c, &method, 1, &rk4, 1), "fmi3SetInt64");
+    must((int)set_integer(three.c, &method, 1, &number, 1), "fmi3SetInt64");
     must((int)three.set(three.c, &friction, 1, &unwatched, 1), "fmi3SetFloat64");
     must((int)enter(three.c, false, 0.0, 0.0, false, 0.0), "fmi3EnterInitializationMode");
     must((int)leave(three.c), "fmi3ExitInitializationMode");

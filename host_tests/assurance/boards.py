@@ -19,9 +19,10 @@ from laconic.can.rig.choices import BOARDS
 from laconic.can.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.errors import LaconicError
 from laconic.scene import read_scene
+from laconic.scene.methods import EXPLICIT
 
 SCENES = ("kuka_youbot", "turtlebot3_burger", "s1")  # the first has the most parameters
-METHOD = "rk4"                                       # every image contains it
+METHOD = EXPLICIT                                    # every image contains it
 STEPS = 20
 
 

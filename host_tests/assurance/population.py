@@ -1,5 +1,5 @@
 """Made-up vehicles, six kinds of wheels, damping from usual to a million times that, and their true motion: errors of
-`auto` and of exponential-kahan-4 at 1 ms and 10 ms, and their error estimates beside the errors.
+`auto` and of a method of fourth order at 1 ms and 10 ms, and their error estimates beside the errors.
 
     population [--vehicles N] [--seed S] [--real double|single] [--method A,B]
 
@@ -24,6 +24,7 @@ from laconic.core import Core, load
 from laconic.core.estimate import Errors, ErrorSizes
 from laconic.core.plant import Plant
 from laconic.errors import Refused, ResultFails
+from laconic.scene.methods import STIFF_4
 from laconic.tools.enclosure.balls import Vector, ball, precision, times
 from laconic.tools.enclosure.equation import equation_of
 from laconic.tools.enclosure.loads import Stretch
@@ -45,7 +46,7 @@ GOAL_BITS, GUARD_BITS = 100, 48
 AGREE = 1e-20                     # of 50 digits with an enclosure, beyond its radius, relative to the largest number
 KINDS = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel": slice(6, None)}
 STEPS_S = (0.001, 0.01)
-AUTO, BESIDE = "auto", "exponential-kahan-4"
+AUTO, BESIDE = "auto", STIFF_4
 LARGEST = {"double": {(AUTO, 0.001): 1e-12, (AUTO, 0.01): 1e-8},
            "single": {(AUTO, 0.001): 1e-3, (AUTO, 0.01): 1e-3}}
 NEVER_WORSE = {"double": 1e-12, "single": 1e-3}  # than BESIDE's error, but for this

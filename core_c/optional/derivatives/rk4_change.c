@@ -1,4 +1,4 @@
-/* Classical Runge-Kutta, linearised stage by stage (rk4.c). */
+/* Classical Runge-Kutta, linearised stage by stage. */
 #include "step_change.h"
 
 #define STAGES 4

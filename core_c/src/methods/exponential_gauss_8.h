@@ -125,7 +125,7 @@ INLINE real distance_of_nodes(const node_vectors *zeta, const node_vectors *othe
 
 /* Whether a round that moved ζ at the nodes so far ended at the solution. False for NaN. */
 static inline verdict nodes_settled(const node_vectors *zeta, real move, real tolerance) {
-    static const node_vectors zero;
+    static const node_vectors zero = ALL_ZERO;
     return move <= tolerance * distance_of_nodes(zeta, &zero);
 }
 

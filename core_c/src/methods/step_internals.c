@@ -80,8 +80,8 @@ bool laconic_energy_kept(const laconic_model *model, const laconic_state *state,
 /* Adds to a sum what the addition loses, too, whatever the sizes: value + rest stays exact but for the rest's own
  * rounding (Knuth's two-sum). */
 static void add_exactly(laconic_sum *sum, real addend) {
-    const real value = sum->value + addend, part = value - sum->value;
-    sum->rest += (sum->value - (value - part)) + (addend - part);
+    const real value = sum->value + addend, added = value - sum->value;
+    sum->rest += (sum->value - (value - added)) + (addend - added);
     sum->value = value;
 }
 

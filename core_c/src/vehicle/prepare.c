@@ -49,8 +49,8 @@ static real slide_of(const basis *known, const body *b, const laconic_wheel *whe
     const real vx = motion.x - (wheel->y_m - b->com_y_m) * per_yaw * motion.z;
     const real vy = motion.y + (wheel->x_m - b->com_x_m) * per_yaw * motion.z;
     const real way = laconic_root((vx * vx + vy * vy) * (row[0] * row[0] + row[1] * row[1]));
-    const real part = magnitude(dot(vec(row), motion)) / way;
-    return is_finite(part) ? part : R(0); /* a way beyond all numbers, or none */
+    const real sine = magnitude(dot(vec(row), motion)) / way;
+    return is_finite(sine) ? sine : R(0); /* a way beyond all numbers, or none */
 }
 
 /* Refuses the wheel that takes the last motion; `why` may be NULL. */

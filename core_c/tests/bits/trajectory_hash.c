@@ -108,9 +108,10 @@ static int run(const laconic_method *method, int which) {
     return 0;
 }
 
-/* The line of the methods first … end − 1. */
+/* The line of the methods first … end − 1; none of a method that the build leaves out. */
 static int print_line(int32_t first, int32_t end) {
     hash = 1469598103934665603U;
+    if (laconic_method_by_number(first) == NULL) return 0;
     for (int32_t number = first; number < end; number++)
         for (int which = 0; which < 3; which++)
             if (run(laconic_method_by_number(number), which) != 0) return 1;

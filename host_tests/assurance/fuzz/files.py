@@ -24,6 +24,7 @@ from laconic.can.play.map_join import join
 from laconic.errors import BadInput, ResultFails
 from laconic.robot.logs.column_map import MAPS
 from laconic.robot.logs.column_map import read_map as read_columns
+from laconic.scene.methods import EXPLICIT
 from laconic.scene.scene import read_scene
 from laconic.scene.table import entries_of
 
@@ -33,7 +34,7 @@ LONGEST_LINE, STEPS = 2000, 3
 REMEDIES = ("; ", "give ", "take ", "correct ", "did you mean", "save ", "use ", "name ", "put ", ", not ")
 ODD: tuple[Any, ...] = (
     0, 1, -1, 2, 3, 16, 17, 255, 360, 0.1, 0.5, -0.0, 1e-300, 1e17, 1e300, -1e300, 5e-324, float("nan"), float("inf"),
-    -float("inf"), 2**31, 2**63, -2**63, 10**30, 10**400, True, False, "", " ", "a", "nan", "1e999", "rk4", "auto",
+    -float("inf"), 2**31, 2**63, -2**63, 10**30, 10**400, True, False, "", " ", "a", "nan", "1e999", EXPLICIT, "auto",
     "\n", "\t", "\x7f", "\u202e", "ν", "x" * 300, "../..", "%s%n", [], [[]], {}, [1], [1, 2, 3], [0.0] * 3,
     ["a"], [{}], [None], {"a": 1})
 LETTERS = "\"'[]{}=.,#-0123456789eE_ \n\r\t\0:;|@+()ξ\ufeff"

@@ -13,6 +13,7 @@ from laconic.batch import Batch
 from laconic.core import Vehicle, load
 from laconic.core.plant import Plant
 from laconic.errors import Refused
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.verify.exact.trials import INPUTS, KINDS, Trial, made_up, plant_of
 
 LANES, RUNS, MOST_STEPS = 48, 4, 60
@@ -59,7 +60,7 @@ def population(random: np.random.Generator, counted: Counter[str]) -> list[str]:
 
 def drawn(random: np.random.Generator, core: Any, method: str, step_s: float) -> tuple[Trial, Plant] | None:
     """A vehicle at its start; None where the method refuses it."""
-    made = made_up(random, str(random.choice(KINDS)), str(random.choice(["rk4", method])))
+    made = made_up(random, str(random.choice(KINDS)), str(random.choice([EXPLICIT, method])))
     nu = [value * 1e3 for value in made.nu] if random.random() < FAST else made.nu
     held = dict(made.held) | ({"body_moment_Nm": [float("nan")]} if random.random() < LOST else {})
     trial = Trial(made.kind, method, made.table, step_s, nu, made.heading_rad, held)

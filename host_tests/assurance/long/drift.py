@@ -1,7 +1,7 @@
 """Many steps of motions whose end is known in closed form: rest, straight lines, a spin, circles, free motion with
 petals. Heading and place may drift by rounding alone, in both scalar types; the references have 60 digits.
 
-All motions step next to each other in the lanes of a batch, by `auto` and `rk4`."""
+All motions step next to each other in the lanes of a batch, by `auto` and the explicit method of fourth order."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from laconic.batch import Batch
 from laconic.core import Vehicle
 from laconic.errors import Refused, ResultFails
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 from laconic.tools.report.collocation import DIGITS, exact, true_states
 from laconic.tools.report.drift import free
 from laconic.tools.report.nodes import BITS
@@ -27,7 +28,7 @@ from laconic.tools.verify.exact.exact_model import ExactModel, Vector, cross, do
 from laconic.tools.verify.exact.exact_steps import forcing_of, rate
 from laconic.tools.verify.exact.trials import INPUTS
 
-METHODS, STEP_S = ("auto", "rk4"), 1e-3
+METHODS, STEP_S = ("auto", EXPLICIT), 1e-3
 LEAST_STEPS, PIECE = 20_000, 1_000_000
 LARGEST_ULP = 16.0  # of heading and place, in units of rounding of what they have come to;
 FREE_ULP = 100.0    # where ζ itself turns, which amplifies the rounding of its start in a period,

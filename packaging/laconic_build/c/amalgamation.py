@@ -121,7 +121,8 @@ def public_headers() -> str:
 
 
 def all_sources() -> str:
-    sources = {path.name: path for path in sorted((CORE / "src").rglob("*.[ch]"))}
+    public = (CORE / "include" / "laconic").glob("*.h")  # fields.c includes one that laconic.h does not
+    sources = {path.name: path for path in (*public, *sorted((CORE / "src").rglob("*.[ch]")))}
     seen, system = {"laconic.h"}, set[str]()
     parts = [part_of(sources[name], sources, seen, system) for name in sorted(sources) if name.endswith(".c")]
     shared = sorted({name for path in sources.values() if path.suffix == ".h" for name in macros(path)})

@@ -77,7 +77,7 @@ def test_without_any_option_for_bits_it_has_the_bits_of_the_core(compiler, real,
     options = [effort, *fusing, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
     run(compiler, "-x", language(compiler), *options, *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c", "-o", "hash",
         folder=pair)
-    assert run("./hash", folder=pair).split() == BITS[real]
+    assert run("./hash", folder=pair).split()[:2] == BITS[real]  # then a line for each later method
 
 
 @pytest.mark.nightly
@@ -85,7 +85,7 @@ def test_what_firmware_and_fmus_leave_out_changes_no_bit_of_the_other_methods(pa
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
     run("gcc", "-O1", OF_FIRMWARE, *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c", "-o", "small", folder=pair)
-    assert run("./small", folder=pair).split() == BITS["double"][:1]
+    assert run("./small", folder=pair).split()[0] == BITS["double"][0]
 
 
 def test_the_example_of_the_readme_prints_what_the_readme_states(pair):

@@ -54,7 +54,8 @@ def test_a_wheel_is_known_by_what_it_holds(tmp_path):
     (tmp_path / "laconic" / "_built").mkdir(parents=True)
     shutil.copytree(HOST / "laconic", tmp_path / "laconic", dirs_exist_ok=True,
                     ignore=shutil.ignore_patterns("__pycache__", "_built"))
-    shutil.copytree(SOURCE_DIR / "scenes", tmp_path / "laconic" / "_built" / "sources" / "scenes")
+    for folder in ("scenes", "core_c/include"):
+        shutil.copytree(SOURCE_DIR / folder, tmp_path / "laconic" / "_built" / "sources" / folder)
     done = installed_alone(tmp_path, "simulate", "s1")
     assert done.returncode == 2
     assert done.stderr.startswith("laconic: lib/laconic_cdef_double.h: is not in the wheel for this system; get the ")

@@ -26,9 +26,10 @@ from laconic.can.rig.link import Clock
 from laconic.can.rig.wire import ID_BASE
 from laconic.errors import LaconicError, ResultFails
 from laconic.scene import Scene, read_scene
+from laconic.scene.methods import EXPLICIT
 
 END_S = 5.0  # for the node's last frames
-METHOD = "rk4"  # every image contains it
+METHOD = EXPLICIT  # every image contains it
 
 
 class Telling(NodeVehicle):
