@@ -236,7 +236,11 @@ static void judge(laconic_articulated_reactions *out, const reaction_moment *r, 
     out->largest_N = R(0);
     out->no_slip_margin_N = R(0);
     for (int32_t i = 0; i < m->wheel_count; i++) {
+        const laconic_articulated_wheel *w = &m->wheel[i];
+        const vector x = r->rates.twist[w->body];
+        const real parts = magnitude(w->roll.x * x.x) + magnitude(w->roll.y * x.y) + magnitude(w->roll.z * x.z);
         const real along = out->along_N[i], across = out->lateral_N[i];
+        scale += w->damping_Nms * parts * magnitude(w->inverse_arm_per_m); /* of which a wheel's speed is the rest */
         const real reaction = laconic_root(along * along + across * across);
         if (!(reaction <= out->largest_N)) out->largest_N = reaction;
         scale += reaction;
