@@ -29,7 +29,7 @@ from laconic.can.rig.logs import read_log
 from laconic.cli.main import run
 from laconic.robot.logs import gather_logs
 from laconic.robot.logs.can_frames import read_frames
-from laconic.robot.logs.can_signals import Bits
+from laconic.robot.logs.can_signals import Bits, Words
 
 SMALL = 1e-5
 
@@ -149,6 +149,21 @@ def test_a_number_that_is_not_finite_names_the_frame(value, tmp_path, capsys):
     assert "frame 21: WHEELS.R is not finite" in refused_log(capsys, blf(tmp_path / "run.blf", given), mapped(tmp_path))
     one = mapped(tmp_path, change=[('"WHEELS.L", "WHEELS.R"', '"WHEELS.L"')])
     assert "has 1 wheels, the scene 2" in refused_log(capsys, tmp_path / "run.asc", one)  # what is not used may be NaN
+
+
+@pytest.mark.parametrize("value", [float("nan"), -1.0, 0.5, 1e9])
+def test_a_group_that_no_vehicle_has_is_named(value, tmp_path, capsys):
+    dbc = DBC.replace("WHEELS: 8", "WHEELS: 12").replace("BO_ 514", ' SG_ G : 64|32@1- (1,0) [0|0] "" A\nBO_ 514')
+    given = [(time, identifier, data + struct.pack("<f", value if k == 20 else 0.0) if identifier == WHEELS else data)
+             for k, (time, identifier, data) in enumerate(frames())]
+    with can.Logger(tmp_path / "run.log") as writer:
+        for time, identifier, data in given:
+            writer(can.Message(timestamp=time, arbitration_id=identifier, is_extended_id=False, data=data,
+                               is_fd=len(data) > 8))
+    mapping = mapped(tmp_path, dbc=dbc + "SIG_VALTYPE_ 257 G : 1;\n", change=[
+        ('format = "can"', 'format = "can"\ngroup = "G"')])
+    assert f"line 21: WHEELS.G is {value:g}, which is not a group of wheels" in refused_log(
+        capsys, tmp_path / "run.log", mapping)
 
 
 # --------------------------------------------------------------------------------------------- pages
@@ -291,7 +306,8 @@ SIG_VALTYPE_ 1 f : 1;
         data = random.bytes(24)
         wanted = message.decode(data, decode_choices=False)
         for signal in message.signals:
-            assert Bits(signal).value(data) == pytest.approx(float(wanted[signal.name]), nan_ok=True, rel=1e-15)
+            bits = Bits(signal, 24)
+            assert bits.value(Words(data).of(bits)) == pytest.approx(float(wanted[signal.name]), nan_ok=True, rel=1e-15)
 
 
 # ------------------------------------------------------------------------------------ the rig's replay

@@ -26,6 +26,7 @@ from laconic.robot.logs.can_frames import (
 TIME = re.compile(r"\d+(?:[.,]\d+)?")
 HEADER = re.compile(r"base\s+(hex|dec)(?:\s+timestamps\s+(absolute|relative))?", re.IGNORECASE)
 DIRECTIONS = ("rx", "tx")
+USUAL = ("Rx", "Tx")
 DATA, REMOTE = "d", "r"
 CLASSIC_BYTES = 8
 MOST_CHANNELS = 255
@@ -61,6 +62,8 @@ class _Lines:
 
     def _event(self, number: int, parts: list[str]) -> LoggedFrame | None:
         kind = parts[1] if len(parts) > 1 else ""
+        if len(parts) > 5 and parts[3] in USUAL and kind.isdecimal():
+            return self._classic(number, parts)
         if kind.upper() == "CANFD":
             return self._fd(number, parts)
         if kind.isdecimal() and len(parts) > 2 and parts[2].lower() == "errorframe":

@@ -25,6 +25,9 @@ STANDARD, EXTENDED = 0x7FF, 0x1FFFFFFF   # largest identifiers of 11 and of 29 b
 FD_LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)  # by the data length code
 
 
+PAIRS = re.compile(r"[0-9A-Fa-f]*")
+
+
 class LoggedFrame(can.Message):
     """A frame of a log; `place` names where it is in the file, for messages."""
 
@@ -115,6 +118,10 @@ def bytes_in(number: int, texts: Sequence[str], count: int, base: int = 16) -> b
     """So many bytes at the beginning of some texts."""
     if len(texts) < count:
         fail(number, f"has {len(texts)} of the frame's {count} bytes")
+    digits = "".join(texts[:count])
+    if base == 16 and len(digits) == 2 * count and PAIRS.fullmatch(digits) and all(
+            len(text) == 2 for text in texts[:count]):
+        return bytes.fromhex(digits)
     try:
         values = [int(text, base) if text.isalnum() else 256 for text in texts[:count]]
         return bytes(values)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from cantools.database.can import Message
 from cantools.database.can.signal import Signal
@@ -12,29 +11,51 @@ from cantools.database.can.signal import Signal
 FLOATS = {16: "e", 32: "f", 64: "d"}
 
 
-@dataclass(frozen=True)
 class Bits:
-    """Where a signal is in a payload, and what it means."""
+    """Where a signal is in a payload of so many bytes, and what it means."""
 
-    signal: Signal
+    def __init__(self, signal: Signal, length: int):
+        self.signal = signal
+        self.is_little = signal.byte_order == "little_endian"
+        first = 8 * (signal.start // 8) + 7 - signal.start % 8  # counted from the highest bit of byte 0 on
+        self._shift = signal.start if self.is_little else 8 * length - first - signal.length
+        self._mask = (1 << signal.length) - 1
+        self._half = 1 << signal.length - 1 if signal.is_signed else 0
+        self._scale, self._offset = signal.scale, signal.offset
+        self._float = struct.Struct(f">{FLOATS[signal.length]}") if signal.is_float else None
 
-    def raw(self, data: bytes) -> int | float:
-        """The raw value in a payload that has all of the signal's bits."""
-        signal = self.signal
-        if signal.byte_order == "little_endian":
-            word = int.from_bytes(data, "little") >> signal.start
-        else:
-            first = 8 * (signal.start // 8) + 7 - signal.start % 8  # counted from the highest bit of byte 0 on
-            word = int.from_bytes(data, "big") >> (8 * len(data) - first - signal.length)
-        word &= (1 << signal.length) - 1
-        if signal.is_float:
-            value: float = struct.unpack(f">{FLOATS[signal.length]}", word.to_bytes(signal.length // 8, "big"))[0]
+    def raw(self, word: int) -> int | float:
+        """The raw value in a payload, which is one whole number in the signal's order of bytes."""
+        found = word >> self._shift & self._mask
+        if self._float is not None:
+            value: float = self._float.unpack(found.to_bytes(self._float.size, "big"))[0]
             return value
-        return word - (1 << signal.length) if signal.is_signed and word >> signal.length - 1 else word
+        return found - 2 * self._half if self._half and found >= self._half else found
 
-    def value(self, data: bytes) -> float:
+    def value(self, word: int) -> float:
         """The value in the signal's unit."""
-        return float(self.raw(data) * self.signal.scale + self.signal.offset)
+        return float(self.raw(word) * self._scale + self._offset)
+
+
+class Words:
+    """A payload as one whole number, in either order of bytes."""
+
+    __slots__ = ("_big", "_data", "_little")
+
+    def __init__(self, data: bytes):
+        self._data = data
+        self._little: int | None = None
+        self._big: int | None = None
+
+    def of(self, bits: Bits) -> int:
+        """In the order of a signal."""
+        if bits.is_little:
+            if self._little is None:
+                self._little = int.from_bytes(self._data, "little")
+            return self._little
+        if self._big is None:
+            self._big = int.from_bytes(self._data, "big")
+        return self._big
 
 
 class Wanted:
@@ -42,27 +63,30 @@ class Wanted:
 
     def __init__(self, message: Message, names: Iterable[str]):
         self.message = message
-        self._bits = {each.name: Bits(each) for each in message.signals}
+        self._bits = {each.name: Bits(each, message.length) for each in message.signals}
         self.names = tuple(names)
+        self._taken = [(name, self._bits[name], self._pages(name)) for name in self.names]
 
-    def values(self, data: bytes) -> dict[str, float]:
-        """The wanted signals that are on the page of this payload."""
-        whole = data[: self.message.length]
-        return {name: self._bits[name].value(whole) for name in self.names if self._is_on(name, whole)}
-
-    def one(self, name: str, data: bytes) -> float:
-        """A signal that is in every frame."""
-        return self._bits[name].value(data[: self.message.length])
-
-    def _is_on(self, name: str, data: bytes) -> bool:
-        """Whether the multiplexers of a signal, from its own outwards, have the values that select it."""
+    def _pages(self, name: str) -> list[tuple[Bits, frozenset[int]]]:
+        """The multiplexers that select a signal, from its own outwards, with the values that do."""
+        found: list[tuple[Bits, frozenset[int]]] = []
         signal, seen = self._bits[name].signal, {name}
         while (selector := signal.multiplexer_signal) is not None and selector not in seen:
             seen.add(selector)
-            if self._bits[selector].raw(data) not in (signal.multiplexer_ids or ()):
-                return False
+            found.append((self._bits[selector], frozenset(signal.multiplexer_ids or ())))
             signal = self._bits[selector].signal
-        return True
+        return found
+
+    def values(self, data: bytes) -> dict[str, float]:
+        """The wanted signals that are on the page of this payload, which is as long as its message."""
+        words = Words(data[: self.message.length])
+        return {name: bits.value(words.of(bits)) for name, bits, pages in self._taken
+                if not pages or all(each.raw(words.of(each)) in ids for each, ids in pages)}
+
+    def one(self, name: str, data: bytes) -> float:
+        """A signal that is in every frame."""
+        bits = self._bits[name]
+        return bits.value(Words(data[: self.message.length]).of(bits))
 
     def page_of(self, name: str) -> str:
         """The page of a signal in words; empty for one that is in every frame."""

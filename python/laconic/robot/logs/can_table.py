@@ -24,6 +24,7 @@ from laconic.robot.logs.column_map import NUMBERED, ColumnMap, Quantity
 
 OWN_DBC = SOURCE_DIR / "firmware_stub" / "laconic.dbc"
 SAME_INSTANT = 0.1       # of the rows' period: signals of so near frames are of one instant
+MOST_GROUPS = 1000       # of wheels
 DISORDER_S = 0.1         # by which frames of a log may be out of order, as those of several interfaces are
 BITS = {False: "11 bits", True: "29 bits"}
 
@@ -59,6 +60,8 @@ class Want:
     needed: list[str]                 # signals that must be there
     group: str                        # the signal that says which wheels a frame is of; empty: none
     heard: set[str] = field(default_factory=set)      # channels on which it came
+    names: dict[int, dict[str, str]] = field(default_factory=dict)   # of each group: signal → "MESSAGE.signal"
+    shares: dict[tuple[int, tuple[str, ...]], frozenset[str]] = field(default_factory=dict)
     short: list[tuple[str, int]] = field(default_factory=list)  # places and lengths of frames that are too short
     frames: int = 0
 
@@ -66,6 +69,19 @@ class Want:
     def title(self) -> str:
         """How messages name it."""
         return f"{self.entry.name} (0x{self.entry.frame_id:X}, {BITS[self.entry.is_extended_frame]})"
+
+    def names_in(self, group: int) -> dict[str, str]:
+        """The signals of a group of wheels as "MESSAGE.signal"."""
+        if group not in self.names:
+            self.names[group] = {name: counted_name(self, name, group) for name in self.signals.names}
+        return self.names[group]
+
+    def needed_of(self, group: int, there: tuple[str, ...]) -> frozenset[str]:
+        """What a frame with these signals brings of what must be there."""
+        if (group, there) not in self.shares:
+            names = self.names_in(group)
+            self.shares[group, there] = frozenset(names[name] for name in there if name in self.needed)
+        return self.shares[group, there]
 
 
 def database_of(columns: ColumnMap) -> Dbc:
@@ -138,7 +154,7 @@ def _wants(columns: ColumnMap, database: Dbc) -> list[Want]:
 # ------------------------------------------------------------------------------------------ frames
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Sample:
     """What one frame says."""
 
@@ -171,15 +187,25 @@ def _samples(path: Path, columns: ColumnMap, frames: Sequence[LoggedFrame], want
 
 def _sample(path: Path, frame: LoggedFrame, want: Want, data: bytes) -> Sample:
     """A frame's signals; in a group the signals' numbers go on counting. BadInput for a number that is not finite."""
-    which = int(want.signals.one(want.group, data)) if want.group else 0
-    values = {}
-    for name, value in want.signals.values(data).items():
-        if not math.isfinite(value):
+    which = _group_of(path, frame, want, data) if want.group else 0
+    values, names = want.signals.values(data), want.names_in(which)
+    if not math.isfinite(sum(values.values())):
+        name = next((name for name, value in values.items() if not math.isfinite(value)), None)
+        if name is not None:
             raise BadInput(f"{path}: {frame.place}: {want.entry.name}.{name} is not finite; remove the frame or repair "
                            "it")
-        values[counted_name(want, name, which)] = value
-    needed = frozenset(counted_name(want, name, which) for name in want.needed) & values.keys()
-    return Sample(frame.timestamp, frame.place, want.channel, values, frozenset(needed))
+    needed = want.needed_of(which, tuple(values))
+    return Sample(frame.timestamp, frame.place, want.channel,
+                  {names[name]: value for name, value in values.items()}, needed)
+
+
+def _group_of(path: Path, frame: LoggedFrame, want: Want, data: bytes) -> int:
+    """Which wheels a frame is of, counted from 0; BadInput for a group that no vehicle has."""
+    value = want.signals.one(want.group, data)
+    if not 0.0 <= value < MOST_GROUPS or value != int(value):
+        raise BadInput(f"{path}: {frame.place}: {want.entry.name}.{want.group} is {value:g}, which is not a group of "
+                       "wheels, counted from 0; correct group in the map")
+    return int(value)
 
 
 def counted_name(want: Want, signal: str, group: int) -> str:
