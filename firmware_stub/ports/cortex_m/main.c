@@ -46,9 +46,8 @@ static bool take_byte(char *byte) {
     return true;
 }
 
+/* Where no other line is queued. */
 static void queue_reply(const char *text) {
-    line_length = 0;
-    line_sent = 0;
     while (text[line_length] != 0) {
         line[line_length] = text[line_length];
         line_length++;
@@ -63,7 +62,7 @@ static bool send_some(void) {
         line_length = 0;
         if (frames_to_confirm > 0) {
             frames_to_confirm--;
-            queue_reply("\r");
+            line[line_length++] = '\r';
         } else if (reply_waits) {
             reply_waits = false;
             queue_reply(slcan.reply);
@@ -87,7 +86,7 @@ static bool receive_some(void) {
     while (!reply_waits && take_byte(&byte)) {
         switch (laconic_slcan_feed(&slcan, byte, &frame)) {
         case LACONIC_SLCAN_FRAME:
-            if (frames_to_confirm < UINT8_MAX) frames_to_confirm++;
+            frames_to_confirm++; /* a few at most: they go out before the next line */
             port_on_frame(&node, &frame, board_now_us());
             return true;
         case LACONIC_SLCAN_REPLY: reply_waits = true; return true;
