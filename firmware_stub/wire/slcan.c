@@ -140,7 +140,9 @@ static laconic_slcan_event end_of_line(laconic_slcan *slcan, laconic_frame *fram
     if (length >= LACONIC_SLCAN_LINE) return reply(slcan, REFUSED);
     if (!kind_of(slcan->line[0], &kind)) return command(slcan, length);
     if (!slcan->open || slcan->listen_only || slcan->rate_is_wrong) return reply(slcan, REFUSED);
-    return parse_frame(slcan->line, length, frame) ? LACONIC_SLCAN_FRAME : reply(slcan, REFUSED);
+    if (!parse_frame(slcan->line, length, frame)) return reply(slcan, REFUSED);
+    (void)reply(slcan, DONE);
+    return LACONIC_SLCAN_FRAME;
 }
 
 laconic_slcan_event laconic_slcan_feed(laconic_slcan *slcan, char byte, laconic_frame *frame) {

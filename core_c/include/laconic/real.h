@@ -31,6 +31,10 @@ typedef uint64_t laconic_angle_number; /* angle in units of 2^-64 turn */
 #define LACONIC_REAL_MIN DBL_MIN
 #define LACONIC_RANK_TOLERANCE 1e-9
 #define LACONIC_SMALLEST_ROLLER_SINE 1e-6
+#ifndef LACONIC_CDEF /* 1.5707963267949 of a program would be off by 4e-8, and a tolerance of 1e-300 would be 0 */
+typedef char
+    laconic_in_double_needs_compiling_without_fsingle_precision_constant[sizeof(1.0) == sizeof(double) ? 1 : -1];
+#endif
 #endif
 
 #ifndef LACONIC_LANES /* then each number of a struct is one for each of many vehicles */
@@ -68,8 +72,8 @@ typedef int64_t laconic_turns;
 #define LACONIC_WHEELS(model) ((model)->wheel_count)
 #endif
 
-/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use. Structs then have no members
- * for it, so that what cannot act cannot be set either. */
+/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use: what is left out is not read or
+ * not computed. Definitions that change structs are checked when a program is linked (build.h). */
 #ifndef LACONIC_WITH_OWN_WHEELS /* 0: all wheels have the vehicle's values; own ones are not read */
 #define LACONIC_WITH_OWN_WHEELS 1
 #endif

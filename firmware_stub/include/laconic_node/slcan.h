@@ -2,7 +2,8 @@
  *
  * Understood   O L C open, listen only, close; S0…S8, sxxyy bit rate; t T r R classic frames; d D b B CAN FD frames
  *              (the CANable extension); Y2 Y5 data bit rate; V v N F Z0 Z1 version, number, flags, time stamps.
- * Answered     CR for done, BEL for refused. Frames that the node sends are written as t/T/d/b lines.
+ * Answered     each line: CR for done, also of a frame; BEL for refused. Frames that the node sends are written as
+ *              t/T/d/b lines.
  *
  * The reader gets one byte at a time and keeps one line; it drops a line that is too long, up to its end. */
 #ifndef LACONIC_NODE_SLCAN_H
@@ -17,7 +18,7 @@
 
 typedef enum laconic_slcan_event {
     LACONIC_SLCAN_NOTHING = 0, /* the line is not complete                                 */
-    LACONIC_SLCAN_FRAME,       /* *frame holds a frame                                     */
+    LACONIC_SLCAN_FRAME,       /* *frame holds a frame, reply[] the answer to its line     */
     LACONIC_SLCAN_REPLY        /* reply[] holds the answer to a command; *frame unchanged  */
 } laconic_slcan_event;
 
@@ -28,7 +29,7 @@ typedef struct laconic_slcan {
     bool rate_is_wrong; /* the client has chosen another rate: no frame passes        */
     uint16_t length;    /* of the line so far; LACONIC_SLCAN_LINE: too long, drop it               */
     char line[LACONIC_SLCAN_LINE];
-    char reply[8]; /* text of the last REPLY, ends with 0                        */
+    char reply[8]; /* text of the last answer, ends with 0                       */
 } laconic_slcan;
 
 void laconic_slcan_init(laconic_slcan *slcan, char required_rate);

@@ -19,6 +19,8 @@ static volatile uint16_t ring_head, ring_tail; /* written by the interrupt; by m
 static volatile bool ring_was_full;
 static char line[LACONIC_SLCAN_LINE];
 static uint16_t line_length, line_sent;
+static uint8_t frames_to_confirm; /* lines of frames whose CR has not been sent                   */
+static bool reply_waits;          /* to be sent behind these; no byte is read before, nor is one lost */
 
 bool port_has_room(void) {
     if ((uint16_t)(ring_head - ring_tail) < RING_SIZE) return true;
@@ -44,9 +46,8 @@ static bool take_byte(char *byte) {
     return true;
 }
 
+/* Where no other line is queued. */
 static void queue_reply(const char *text) {
-    line_length = 0;
-    line_sent = 0;
     while (text[line_length] != 0) {
         line[line_length] = text[line_length];
         line_length++;
@@ -59,7 +60,15 @@ static bool send_some(void) {
     if (line_sent == line_length) {
         line_sent = 0;
         line_length = 0;
-        if (port_next_frame(&node, &frame)) line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
+        if (frames_to_confirm > 0) {
+            frames_to_confirm--;
+            line[line_length++] = '\r';
+        } else if (reply_waits) {
+            reply_waits = false;
+            queue_reply(slcan.reply);
+        } else if (port_next_frame(&node, &frame)) {
+            line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
+        }
     }
     while (line_sent < line_length && board_send(line[line_sent])) line_sent++;
     return line_length > 0;
@@ -74,12 +83,13 @@ static bool has_steps(void) {
 static bool receive_some(void) {
     laconic_frame frame;
     char byte;
-    while (take_byte(&byte)) {
+    while (!reply_waits && take_byte(&byte)) {
         switch (laconic_slcan_feed(&slcan, byte, &frame)) {
-        case LACONIC_SLCAN_FRAME: port_on_frame(&node, &frame, board_now_us()); return true;
-        case LACONIC_SLCAN_REPLY:
-            if (line_sent == line_length) queue_reply(slcan.reply);
+        case LACONIC_SLCAN_FRAME:
+            frames_to_confirm++; /* a few at most: they go out before the next line */
+            port_on_frame(&node, &frame, board_now_us());
             return true;
+        case LACONIC_SLCAN_REPLY: reply_waits = true; return true;
         default: break;
         }
     }

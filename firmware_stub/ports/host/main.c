@@ -173,7 +173,10 @@ static void take_bytes(board *port, station *sender, const char *bytes, ssize_t 
     laconic_frame frame;
     for (ssize_t k = 0; k < count; k++) {
         switch (laconic_slcan_feed(&sender->slcan, bytes[k], &frame)) {
-        case LACONIC_SLCAN_FRAME: take_frame(port, sender, &frame); break;
+        case LACONIC_SLCAN_FRAME:
+            station_reply(sender);
+            take_frame(port, sender, &frame);
+            break;
         case LACONIC_SLCAN_REPLY: station_reply(sender); break;
         default: break;
         }

@@ -58,6 +58,17 @@ static void frames_of_every_kind_are_read(void) {
     TEST_ASSERT_EQUAL_UINT8(12, frame.length);
 }
 
+/* A client that waits for the answer of each line it sends waits for that of a frame, too. */
+static void the_line_of_a_frame_is_answered_as_any_other(void) {
+    static const char *const lines[] = {"t1000\r", "T1FFFFFFF1AB\r", "r2008\r", "d2009000102030405060708090A0B\r"};
+    feed("O\r");
+    for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+        answers("V\r", "V1010\r");
+        TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed(lines[k]));
+        TEST_ASSERT_EQUAL_STRING("\r", slcan.reply);
+    }
+}
+
 static void lines_that_are_no_frames_are_refused(void) {
     const char *const wrong[] = {"t\r",       "t20\r",       "t8001AA\r", "t2009\r", "t2001\r",
                                  "t2001A\r",  "t2001AAB\r",  "t2001GG\r", "tXYZ0\r", "T200000000\r",
@@ -327,6 +338,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
     RUN_TEST(frames_of_every_kind_are_read);
+    RUN_TEST(the_line_of_a_frame_is_answered_as_any_other);
     RUN_TEST(lines_that_are_no_frames_are_refused);
     RUN_TEST(a_line_too_long_is_dropped_to_its_end);
     RUN_TEST(at_the_wrong_bit_rate_nothing_comes_or_goes);

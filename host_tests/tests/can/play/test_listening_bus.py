@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import types
 
 import can
@@ -39,6 +40,28 @@ def test_clients_of_one_port_hear_each_other_as_stations_of_a_bus_do() -> None:
         one.send(FRAMES[0])
         assert same(bus.recv(1.0), FRAMES[0])
         assert same(other.recv(1.0), FRAMES[0])
+
+
+def test_every_line_of_a_client_is_answered_also_that_of_a_frame() -> None:
+    with ListeningBus(0) as bus, socket.create_connection(("127.0.0.1", bus.port), timeout=5.0) as client:
+        for line, answer in ((b"S6", b"\r"), (b"O", b"\r"), (b"t1231AB", b"\r"), (b"T18FF50E50", b"\r"),
+                             (b"t1239", b"\a"), (b"r7FF8", b"\r"), (b"V", b"V1010\r")):
+            client.sendall(line + b"\r")
+            while (bus.recv(0.01)) is not None:
+                pass
+            assert client.recv(16) == answer
+
+
+def test_a_client_that_sends_and_never_reads_takes_no_memory() -> None:
+    with ListeningBus(0) as bus, socket.create_connection(("127.0.0.1", bus.port)) as client:
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
+        client.sendall(b"O\r")
+        line = b"t1230\r" * 1000
+        for _ in range(200):
+            client.sendall(line)
+            while bus.recv(0.0) is not None:
+                pass
+        assert all(len(each.waiting) <= listener.MOST_WAITING + 8 for each in bus._clients.values())
 
 
 def test_a_client_that_leaves_and_comes_back_finds_the_bus_as_before() -> None:

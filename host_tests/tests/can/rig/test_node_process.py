@@ -41,6 +41,16 @@ def test_a_second_client_learns_that_the_line_is_occupied_and_the_first_is_not_d
         assert first.recv(16) == b"V1010\r"
 
 
+@pytest.mark.parametrize("option", [[], ["--shared"]])
+def test_every_line_is_answered_also_that_of_a_frame(option: list[str]) -> None:
+    with node_process("double", ID_BASE, *option) as port, \
+            socket.create_connection(("127.0.0.1", port), timeout=5.0) as client:
+        for line, answer in ((b"S6", b"\r"), (b"O", b"\r"), (b"t10083412341200000000", b"\r"), (b"T000000010", b"\r"),
+                             (b"t1009", b"\a"), (b"d1001AB", b"\r")):
+            client.sendall(line + b"\r")
+            assert client.recv(1) == answer
+
+
 def test_a_rig_that_is_the_second_client_names_why_it_cannot_reach_the_node(capsys: pytest.CaptureFixture[str]) -> None:
     with node_process() as port, socket.create_connection(("127.0.0.1", port)) as first:
         first.sendall(b"V\r")

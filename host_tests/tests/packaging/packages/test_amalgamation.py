@@ -123,6 +123,20 @@ def test_options_that_break_its_promises_are_refused_and_only_in_its_own_file(pa
     assert "laconic: -ffast-math" in done.stderr
 
 
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+def test_constants_in_single_precision_are_refused_in_double_and_change_no_bit_in_single(pair):
+    (pair / "user.c").write_text('#include "laconic/laconic.h"\nint main(void) { return 0; }\n', encoding="utf-8")
+    for name in ("user.c", "laconic/laconic.c"):
+        done = subprocess.run(["gcc", "-fsingle-precision-constant", "-w", "-fsyntax-only", name], cwd=pair, text=True,
+                              capture_output=True, check=False)
+        assert done.returncode != 0
+        assert "needs_compiling_without_fsingle_precision_constant" in done.stderr
+    run("gcc", "-O1", "-fsingle-precision-constant", "-DLACONIC_SINGLE", *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c",
+        "-o", "hash", folder=pair)
+    assert run("./hash", folder=pair).split() == BITS["single"]
+    run("gcc", "-fsingle-precision-constant", *STRICT, "-fsyntax-only", "laconic/laconic_single.c", folder=pair)
+
+
 def test_it_is_made_the_same_twice_by_python_alone_and_names_version_and_licence(pair, tmp_path):
     subprocess.run([sys.executable, "-S", "-m", "laconic_build.c", "amalgamation", str(tmp_path)], check=True,
                    env={**os.environ, "PYTHONPATH": str(SOURCE_DIR / "packaging")})

@@ -46,14 +46,14 @@ class Client:
         self._stuck_since: float | None = None
 
     def frames(self, data: bytes, box: FrameBox) -> Iterator[can.Message]:
-        """The frames in the bytes received; answers to commands wait to be sent."""
+        """The frames in the bytes received; answers to their lines and to commands wait to be sent."""
         feed = self.library.lib.laconic_slcan_feed
         for byte in data:
             event = feed(self._slcan, bytes((byte,)), box.c)
+            if event in (FRAME, REPLY) and len(self.waiting) <= MOST_WAITING:
+                self.waiting += self._reply()
             if event == FRAME:
                 yield box.message(time.time())
-            elif event == REPLY:
-                self.waiting += self._reply()
 
     def _reply(self) -> bytes:
         """An answer to a command; SLCAN has no error frames, but a flag that tells of them once."""
