@@ -14,13 +14,15 @@ static real surplus_of(const step_point *at, vector end, vector b, vector path) 
     return square(end) - square(at->zeta) - R(2) * dot(b, path);
 }
 
-/* Whether the step ended shorter than its method had it by itself. */
+/* Whether the step ended shorter than its method had it by itself. The step is taken with other roundings than here, so
+ * that what is hardly more than rounding is none. */
 static bool was_cut(cut_trace *t, const taken_step *s) {
     const direction ahead = {R(1), R(0)};
     t->end = plus(s->at.zeta, s->result.delta);
     t->b = forcing_seen(&s->at, ahead);
     const real surplus = surplus_of(&s->at, t->end, t->b, s->result.path);
-    if (!(surplus > R(0.5) * ENERGY_ROUNDING * square(s->at.zeta))) return false;
+    const real reach = size(t->b) * size(s->result.path);
+    if (!(surplus > R(0.75) * ENERGY_ROUNDING * square(s->at.zeta) + R(0.09375) * reach)) return false;
     if (!(surplus_of(&s->at, s->end, t->b, s->result.path) < R(0.5) * surplus)) return false;
     const vector w = vec(s->at.model->gyro);
     t->along = s->at.model->gyro_square > R(0) ? scaled(R(1) / s->at.model->gyro_square, w) : none;

@@ -255,7 +255,7 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     if (!USUALLY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &found.moved.along_m))
         return not_passive(by);
     if (!USUALLY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
-    return end_levelled(state, model, integrator->step_s, samples, zeta, by, found.moved);
+    return end_levelled(state, model, integrator->step_s, samples, by, found.moved);
 }
 
 /* ------------------------------------------------------------------------------ preparation -- */

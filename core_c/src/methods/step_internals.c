@@ -115,15 +115,16 @@ static void level(laconic_sum zeta[3], const laconic_model *model, real gained, 
     const real rounding = ENERGY_ROUNDING * square(now);
     real surplus = gained + lost;
     if (surplus > rounding) surplus = gained > R(0) ? gained : R(0);
-    if (surplus < -rounding || !(magnitude(surplus) <= R(0.25) * square(across))) return;
+    if (surplus < -rounding || !(magnitude(surplus) < R(0.25) * square(across))) return;
     add_to_sums(zeta, scaled(R(-0.5) * surplus / square(across), across));
 }
 
 laconic_status laconic_accept_levelled(laconic_state *state, const laconic_model *model, real step_s,
-                                       const increment *by, const pose_change *moved) {
+                                       const laconic_forcing_samples *samples, const increment *by,
+                                       const pose_change *moved) {
     const laconic_sum before[3] = {state->zeta[0], state->zeta[1], state->zeta[2]};
     const laconic_status status = accept_step(state, by->delta, scaled(step_s, by->mean), *moved);
-    if (status == LACONIC_OK)
+    if (status == LACONIC_OK && unforced(samples))
         level(state->zeta, model, square_gained(state->zeta, before), square_lost(model, step_s, by->mean));
     return status;
 }

@@ -215,8 +215,8 @@ INLINE verdict keeps_energy(const laconic_model *model, const laconic_state *sta
     const real before = square(zeta), after = square(plus(zeta, by->delta));
     const verdict calm = after <= (R(1) + ENERGY_ROUNDING) * before;
     if (ALL(calm)) return KNOWN(true, calm);
-    const real supplied = R(2) * step_s * dot(vec(samples->start->constant), by->mean);
-    const verdict driven = OR_ELSE(calm, after - before <= supplied + ENERGY_TOLERANCE * magnitude(supplied));
+    const real power = dot(vec(samples->start->constant), by->mean);
+    const verdict driven = OR_ELSE(calm, after - before <= R(2) * (R(1) + ENERGY_TOLERANCE) * step_s * power);
     const bool kept = ALL(driven) || !ALONE || energy_kept(model, state, step_s, samples, by);
     return kept ? KNOWN(true, driven) : KNOWN(false, driven);
 }
@@ -326,21 +326,15 @@ INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_mod
     return advance(state, model, step_s, zeta, by);
 }
 
-/* Roundings lean one way while a motion turns steadily. In single precision they would add up to 3e-3 of its energy in
+/* Roundings lean one way while a motion turns steadily. In single precision they would add up to 4e-3 of its energy in
  * 10⁵ steps, so that a step without forcing ends with the energy that it has to have, to a part of a rounding. Steps
- * that neither turn nor change ζ by 1/16 lean too little for that. */
+ * that yaw by less than this lean too little for that: ζ turns by no more than the body. */
 #ifdef LACONIC_SINGLE
 #define LEVELS_ENERGY true
 #else
 #define LEVELS_ENERGY false
 #endif
-#define LEVELLED_FROM R(0.00390625) /* the square of it */
-
-/* False for NaN. */
-INLINE verdict hardly_turns(const laconic_model *model, real step_s, vector zeta, vector delta) {
-    const real turn = step_s * dot(vec(model->nu_of_zeta[2]), zeta);
-    return BOTH(square(delta) <= LEVELLED_FROM * square(zeta), model->gyro_square * (turn * turn) <= LEVELLED_FROM);
-}
+#define LEVELLED_FROM_RAD R(0.0625)
 
 static inline verdict acts_not(const laconic_forcing *forcing) {
     return NOT(acts(forcing->constant[0], forcing->constant[1], forcing->constant[2]));
@@ -353,22 +347,22 @@ static inline verdict unforced(const laconic_forcing_samples *samples) {
     return BOTH(acts_not(samples->start), BOTH(acts_not(middle), acts_not(end)));
 }
 
-/* Takes the step as accept_step does and levels its energy. */
+/* Takes the step as accept_step does and levels its energy if no forcing acts. */
 laconic_status laconic_accept_levelled(laconic_state *state, const laconic_model *model, real step_s,
-                                       const increment *by, const pose_change *moved);
+                                       const laconic_forcing_samples *samples, const increment *by,
+                                       const pose_change *moved);
 
 INLINE laconic_status end_levelled(laconic_state *state, const laconic_model *model, real step_s,
-                                   const laconic_forcing_samples *samples, vector zeta, increment by,
-                                   pose_change moved) {
-    if (LEVELS_ENERGY) {
-        const verdict turns = NOT(hardly_turns(model, step_s, zeta, by.delta));
-        if (RARELY(BOTH(turns, unforced(samples)), &moved.along_m)) {
-            const increment copy = by;
-            const pose_change by_pose = moved;
-            return laconic_accept_levelled(state, model, step_s, &copy, &by_pose);
-        }
+                                   const laconic_forcing_samples *samples, increment by, pose_change moved) {
+    const vector path = scaled(step_s, by.mean);
+    const real yaw_rad = LACONIC_WITH_POSE ? moved.yaw_change_rad : dot(vec(model->yaw_rate_of_zeta), path);
+    const verdict turns = magnitude(yaw_rad) > LEVELLED_FROM_RAD;
+    if (LEVELS_ENERGY && ANY(turns) && (ALONE || RARELY(BOTH(turns, unforced(samples)), &moved.along_m))) {
+        const increment copy = by;
+        const pose_change by_pose = moved;
+        return laconic_accept_levelled(state, model, step_s, samples, &copy, &by_pose);
     }
-    return END_STEP(state, by.delta, scaled(step_s, by.mean), moved);
+    return END_STEP(state, by.delta, path, moved);
 }
 
 /* `advance` for methods whose steps must not add up to a gain over a run. */
@@ -378,7 +372,7 @@ INLINE laconic_status advance_levelled(laconic_state *state, const laconic_model
     pose_change moved = {R(0), R(0), R(0)};
     if (!USUALLY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
-    return end_levelled(state, model, step_s, samples, zeta, by, moved);
+    return end_levelled(state, model, step_s, samples, by, moved);
 }
 
 INLINE laconic_status advance_with_energy(laconic_state *state, const laconic_model *model, real step_s,

@@ -115,6 +115,27 @@ static void a_step_that_gains_energy_is_refused(void) {
     start_that_gains_energy(&laconic_exponential_gauss_8, three_wheels(), every_input(), 1.0, 500);
 }
 
+/* Near the end of the method the rounds converge late; ROUNDS alone would gain 1e-5 of ζ in such a step. */
+static void free_motion_keeps_its_energy_where_the_rounds_converge_late(void) {
+    const laconic_model m = model_of(three_wheels());
+    const double gyro = sqrt((double)m.gyro_square), yaw_rate = 30;
+    const laconic_input none_acts = no_input();
+    laconic_state state = moving(&m, 20, 10, yaw_rate);
+    const double energy_J = (double)laconic_energy_J(&m, &state);
+    take_steps(&laconic_exponential_gauss_8, &m, &state, &none_acts, 1.85 / (gyro * yaw_rate), 1000);
+    TEST_ASSERT_TRUE(fabs((double)laconic_energy_J(&m, &state) / energy_J - 1) < EITHER(1e-12, 1e-6));
+}
+
+/* A moment that turns the vehicle by several radians within the step. */
+static void a_step_whose_rounds_do_not_converge_is_refused(void) {
+    laconic_input input = every_input();
+    input.world_force_N[0] = REAL(5);
+    input.world_force_point_m[0] = REAL(0.5);
+    input.body_moment_Nm = REAL(EITHER(-8, 8));
+    assert_step_refused(&laconic_exponential_gauss_8, three_wheels(), start_with(0.8, -0.5, 2.4), input, 0.8,
+                        LACONIC_STEP_SINGULAR);
+}
+
 static void numbers_beyond_the_range_are_refused(void) { assert_too_large_force_refused(&laconic_exponential_gauss_8); }
 
 int main(void) {
@@ -131,6 +152,8 @@ int main(void) {
     RUN_TEST(a_forcing_along_one_axis_turns_the_motion);
     RUN_TEST(a_yaw_too_fast_for_the_step_is_refused);
     RUN_TEST(a_step_that_gains_energy_is_refused);
+    RUN_TEST(free_motion_keeps_its_energy_where_the_rounds_converge_late);
+    RUN_TEST(a_step_whose_rounds_do_not_converge_is_refused);
     RUN_TEST(numbers_beyond_the_range_are_refused);
     return UNITY_END();
 }

@@ -190,6 +190,97 @@ static void the_power_is_taken_over_the_step_before_it_is_doubled(void) {
                                       (vector){mean, 0, 0}));
 }
 
+/* -------------------------------------------------------------------- energy that is kept -- */
+
+/* With w along the third axis. */
+static laconic_model turning(void) {
+    laconic_model m;
+    memset(&m, 0, sizeof m);
+    m.gyro[2] = REAL(0.5);
+    m.gyro_square = REAL(0.25);
+    return m;
+}
+
+/* Under a constant b; the increment after it. */
+static bool step_keeps_energy(vector zeta, vector end, vector b, increment *by) {
+    const laconic_model m = turning();
+    laconic_forcing forcing;
+    const laconic_forcing_samples samples = {&forcing, &forcing, &forcing, true};
+    laconic_state state;
+    memset(&forcing, 0, sizeof forcing);
+    memset(&state, 0, sizeof state);
+    set_zeta(&state, zeta);
+    store(forcing.constant, b);
+    by->delta = minus(end, zeta);
+    by->mean = scaled(REAL(0.5), plus(zeta, end));
+    by->slope = by->delta;
+    return keeps_energy(&m, &state, REAL(0.125), &samples, zeta, by);
+}
+
+static void assert_uncut(vector zeta, vector end, vector b) {
+    increment by;
+    TEST_ASSERT_TRUE(step_keeps_energy(zeta, end, b, &by));
+    const vector as_given = minus(end, zeta);
+    TEST_ASSERT_EQUAL_MEMORY(&as_given, &by.delta, sizeof as_given);
+}
+
+static void what_a_step_gains_beyond_rounding_is_cut_across_w(void) {
+    const vector zeta = {3, 4, 12}, end = {0, REAL(5.001), 12}; /* |ζ|² of 169 would be 0.010001 more */
+    increment by;
+    TEST_ASSERT_TRUE(step_keeps_energy(zeta, end, none, &by));
+    ASSERT_NEAR(EITHER(1e-13, 5e-5), 169, square(plus(zeta, by.delta)));
+    ASSERT_NEAR(EITHER(1e-15, 1e-6), 0, by.delta.z);
+    ASSERT_NEAR(EITHER(1e-15, 1e-6), -3, by.delta.x);
+}
+
+static void what_rounding_gains_stays(void) {
+    const vector zeta = {3, 4, 12};
+    assert_uncut(zeta, (vector){0, 5 + 16 * LACONIC_EPSILON, 12}, none);
+    assert_uncut(zeta, (vector){0, REAL(4.9), 12}, none);
+}
+
+/* b·(mean of ζ) of 1.5 gives 0.375 in 1/8 s. */
+static void what_the_forcing_supplies_stays(void) {
+    const vector zeta = {3, 4, 12}, end = {3, REAL(4.04654), 12};
+    assert_uncut(zeta, end, (vector){REAL(0.5), 0, 0});
+}
+
+/* Of forces that could do the work along another motion, 1/16 may come from rounding and truncation. */
+static void what_the_forcing_can_nearly_supply_stays(void) {
+    const vector zeta = {3, 4, 12}, end = {3, REAL(4.01), 12};
+    increment by;
+    assert_uncut(zeta, end, (vector){4, -3, 0});
+    TEST_ASSERT_TRUE(step_keeps_energy(zeta, end, (vector){REAL(0.04), REAL(-0.03), 0}, &by));
+    ASSERT_NEAR(1e-4, 169, square(plus(zeta, by.delta)));
+}
+
+/* Beyond the tolerance, along w alone, not a number: none of these is cut. */
+static void other_gains_are_not_kept(void) {
+    const vector zeta = {3, 4, 12};
+    increment by;
+    TEST_ASSERT_FALSE(step_keeps_energy(zeta, (vector){3, REAL(4.1), 12}, none, &by));
+    TEST_ASSERT_FALSE(step_keeps_energy((vector){0, 0, 12}, (vector){0, 0, REAL(12.001)}, none, &by));
+    TEST_ASSERT_FALSE(step_keeps_energy(zeta, (vector){3, NOT_A_NUMBER, 12}, none, &by));
+    TEST_ASSERT_FALSE(step_keeps_energy(zeta, (vector){3, INFINITE, 12}, none, &by));
+}
+
+/* Where nothing turns ζ, all of it is shortened. */
+static void without_w_all_of_the_motion_is_cut(void) {
+    const vector zeta = {3, 4, 12}, end = {3, 4, REAL(12.001)};
+    laconic_model m = turning();
+    laconic_forcing forcing;
+    laconic_state state;
+    const laconic_forcing_samples samples = {&forcing, &forcing, &forcing, true};
+    increment by = {minus(end, zeta), zeta, none};
+    memset(&forcing, 0, sizeof forcing);
+    memset(&state, 0, sizeof state);
+    set_zeta(&state, zeta);
+    m.gyro[2] = m.gyro_square = 0;
+    TEST_ASSERT_TRUE(keeps_energy(&m, &state, REAL(0.125), &samples, zeta, &by));
+    ASSERT_NEAR(EITHER(1e-13, 5e-5), 169, square(plus(zeta, by.delta)));
+    TEST_ASSERT_TRUE(by.delta.x < 0 && by.delta.y < 0);
+}
+
 /* ------------------------------------------------------------------------------------ rest -- */
 
 /* Half of the last place of AT_REST, which is 1e-150 or 1e-18. */
@@ -232,6 +323,12 @@ int main(void) {
     RUN_TEST(growth_by_just_the_tolerance_is_rounding);
     RUN_TEST(growth_of_just_what_the_forcing_supplies_is_allowed);
     RUN_TEST(the_power_is_taken_over_the_step_before_it_is_doubled);
+    RUN_TEST(what_a_step_gains_beyond_rounding_is_cut_across_w);
+    RUN_TEST(what_rounding_gains_stays);
+    RUN_TEST(what_the_forcing_supplies_stays);
+    RUN_TEST(what_the_forcing_can_nearly_supply_stays);
+    RUN_TEST(other_gains_are_not_kept);
+    RUN_TEST(without_w_all_of_the_motion_is_cut);
     RUN_TEST(at_the_border_the_chord_has_the_digits_of_the_polynomials);
     return UNITY_END();
 }
