@@ -71,11 +71,9 @@ def common_line(axles: Sequence[Line]) -> Line | None:
 
 
 def _directions(axles: Sequence[Line]) -> list[Array]:
-    """Those that a common line may have: the body's axes, the mean of the axles, from one wheel to the farthest."""
-    found = [np.array([0.0, 1.0]), np.array([1.0, 0.0])]
-    same_sense = [each.direction * (1.0 if each.direction @ axles[0].direction >= 0.0 else -1.0) for each in axles]
-    mean = np.sum(same_sense, axis=0)
-    found.append(mean / np.linalg.norm(mean))
+    """Those that a common line may have: the body's axes, that of each axle, from one wheel to the farthest. A mean is
+    not among them: it would be near to axles that differ by twice as much."""
+    found = [np.array([0.0, 1.0]), np.array([1.0, 0.0]), *(each.direction for each in axles)]
     if len(axles) > 1:
         one, other = max(combinations([each.point for each in axles], 2), key=lambda pair: np.linalg.norm(
             pair[0] - pair[1]))
