@@ -132,8 +132,9 @@ def misses_by(lines: Sequence[Line], point: Array) -> tuple[int, float]:
 
 
 def words_of(angle_rad: float, offset_m: float) -> str:
-    """Both numbers."""
-    return f"{np.degrees(angle_rad):.3g}° and {1e3 * offset_m:.3g} mm"
+    """Both numbers, without the rounding of computations."""
+    angle, offset = (0.0 if value <= least else value for value, least in ((angle_rad, EXACT_RAD), (offset_m, EXACT_M)))
+    return f"{np.degrees(angle):.3g}° and {1e3 * offset:.3g} mm"
 
 
 def nearly_one_line(scene: Scene) -> list[str]:
