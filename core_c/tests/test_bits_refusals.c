@@ -162,7 +162,7 @@ static void numbers_of_a_vehicle_anywhere_in_the_range(void) {
         take_why(laconic_prepare(&model, &vehicle, &why));
         take_why(laconic_contact_prepare(&contact, &vehicle, &why));
     }
-    expect(EITHER(0xbcf64120c4991261U, 0xb6f226eb28f06643U));
+    expect(EITHER(0xe578e8cd4e7e2d01U, 0x339769c4addf7a2bU));
 }
 
 /* Two numbers near the ends of what may be squared: each alone is taken, both together may leave the range. */
@@ -181,7 +181,7 @@ static void two_numbers_of_a_vehicle_near_the_ends_of_the_range(void) {
                 memcpy((unsigned char *)&vehicle + numbers_of_vehicle[other], &near[n % 6], sizeof near[0]);
                 take_why(laconic_prepare(&model, &vehicle, &why));
             }
-    expect(EITHER(0x0dbaf1484e349324U, 0xc40d1841b9f6d0faU));
+    expect(EITHER(0x6b4624c55b59dafcU, 0xa4a5aa7e962cf8baU));
 }
 
 static void wheels_and_supports_of_a_vehicle(void) {
@@ -200,7 +200,7 @@ static void wheels_and_supports_of_a_vehicle(void) {
         }
         take_vehicle(&vehicle);
     }
-    expect(EITHER(0xf9e95825578310a8U, 0x3602a635ec547324U));
+    expect(EITHER(0x6b283bc99785881cU, 0x4fb5e67ab8fda900U));
 }
 
 static void a_number_of_a_start_and_a_step(void) {
@@ -344,7 +344,7 @@ static void every_line_of_text(void) {
             TAKE(lengths);
         }
     }
-    expect(EITHER(0x9c26607cea9694c4U, 0xb1ad8eab94befa9dU));
+    expect(EITHER(0x67d04b5e2b0f2fb2U, 0x53cbc8722fdf04efU));
 }
 
 static void lines_of_text_with_numbers_of_every_size(void) {
