@@ -167,3 +167,8 @@ def test_a_joint_of_two_axes_is_that_of_a_steered_wheel(tmp_path: Path) -> None:
     found, scene = imported(tmp_path, SDF.replace("</model>", front), "robot.sdf")
     assert len(scene.vehicle["wheel"]) == 2
     assert "front (axis2) is steered by front, which is not modelled" in support_words(found)
+
+
+def test_a_kingpin_that_is_inclined_steers(tmp_path: Path) -> None:
+    inclined = swivelling(0.0, "revolute", LIMIT.format(-0.5, 0.5)).replace('axis xyz="0 0 1"', 'axis xyz="0 0.25 1"')
+    assert "front is steered by turn" in support_words(imported(tmp_path, inclined)[0])
