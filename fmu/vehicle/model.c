@@ -42,7 +42,7 @@ static fmu_status discard_with(const fmu_instance *instance, const laconic_refus
 void fmu_model_made(fmu_model *model) { model->wheels_have_states = fmu_vehicle_slips(&model->vehicle); }
 
 /* Without step_s, Co-Simulation knows its internal step only at its first communication step, and Model Exchange never.
- * Until then the integrator is prepared for exact-flow, which accepts every step; a vehicle with friction has one
+ * Until then the integrator is prepared for a method that accepts every step; a vehicle with friction has one
  * method only, which does. */
 static laconic_status start_plant(fmu_model *self, laconic_refusal *why) {
     const laconic_method *method = laconic_method_by_number(self->method);
@@ -146,6 +146,12 @@ static void refresh_ideal(fmu_model *self, uint32_t groups) {
     if (groups & FMU_GROUP_ENERGY) self->energy_J = laconic_energy_J(m, s);
 }
 
+void fmu_model_part_loads(double support_load_N[LACONIC_MAX_SUPPORTS], const laconic_reactions *ground,
+                          const laconic_vehicle *vehicle) {
+    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++)
+        support_load_N[i] = i < vehicle->support_count ? ground->normal_N[vehicle->wheel_count + i] : 0.0;
+}
+
 static void refresh_rates(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     const bool friction = self->plant.friction.acts;
@@ -187,6 +193,7 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
         fmu_friction_refresh(self, groups);
     else
         refresh_ideal(self, groups);
+    if (groups & FMU_GROUP_GROUND) fmu_model_part_loads(self->support_load_N, &self->ground, &self->plant.vehicle);
     if (groups & FMU_GROUP_SENSORS) fmu_sensors_refresh(self);
     if (FMU_MODEL_ESTIMATES && groups & FMU_GROUP_ESTIMATE) fmu_estimate_refresh(self);
     self->stale &= ~groups;

@@ -69,6 +69,7 @@
     double wheel_torque_Nm[LACONIC_MAX_WHEELS]; \
     double energy_J; \
     laconic_reactions ground; \
+    double support_load_N[LACONIC_MAX_SUPPORTS]; \
     laconic_rates rates; \
     laconic_sensor_outputs sensed
 
@@ -104,7 +105,7 @@ typedef struct fmu_model {
     bool change_needed;      /* tunable parameters were set since */
     bool states_changed;     /* by an event that no event iteration has reported yet */
     bool continuous;         /* Model Exchange                                */
-    bool stand_in;           /* the step is not known yet: the integrator is prepared for exact-flow */
+    bool stand_in;           /* the step is not known yet: the integrator is prepared for a method that takes any */
     bool wheels_have_states; /* by the start values of the FMU */
     bool idle_wheels;        /* some wheel has no motor       */
     bool watched;            /* `sensors` must see each internal step; else it is not set */
@@ -161,5 +162,10 @@ typedef struct fmu_tangent {
     laconic_input input;
     FMU_MOVING_MEMBERS;
 } fmu_tangent;
+
+/* The loads of supports, or their derivatives, which follow those of wheels in `ground`; 0 for supports that are not
+ * there. The description has them as an array of their own. */
+void fmu_model_part_loads(double support_load_N[LACONIC_MAX_SUPPORTS], const laconic_reactions *ground,
+                          const laconic_vehicle *vehicle);
 
 #endif

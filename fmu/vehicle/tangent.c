@@ -49,6 +49,7 @@ void fmu_model_tangent(fmu_instance *instance, fmu_tangent *tangent) {
     laconic_derivative_tangent(&tangent->rates, m, &at, &self->input, &by);
     laconic_motion_tangent(&change, m, &at, &by);
     laconic_reactions_tangent(&tangent->ground, &self->contact, m, &at, &self->input, &self->ground, &by);
+    fmu_model_part_loads(tangent->support_load_N, &tangent->ground, &self->plant.vehicle);
     laconic_acceleration_tangent(tangent->sensed.acceleration_body_m_per_s2, m, at.nu_rad_per_s, by.nu_rad_per_s,
                                  tangent->rates.nu_rad_per_s2);
     put_motion(tangent, &change, m->wheel_count);

@@ -90,6 +90,9 @@ enum fmu_locations {
     FMU_LOCATION(has_imu, FMU_PLAIN(has_imu))
     LACONIC_SENSOR_FIELDS(FIELD)
 
+    OUTPUT(wheel_load_N, ground.normal_N, FMU_GROUP_GROUND)
+    OUTPUT(support_load_N, support_load_N, FMU_GROUP_GROUND)
+
 #if FMU_MODEL_ESTIMATES
     FMU_LOCATION(estimate_error, FMU_PLAIN(estimate_error))
     FMU_LOCATION(estimate_window_steps, FMU_PLAIN(estimate_window_steps))

@@ -1,6 +1,6 @@
 /* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` connects to it as to a board.
  *
- *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once] [--shared] [--key FILE]
+ *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once | --with-parent] [--shared] [--key FILE]
  *     laconic-node-double --socketcan can0 [--id-base 0xNNN] [--key FILE]
  *
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
@@ -34,7 +34,7 @@ enum { BUS_DIED = 1, BAD_INPUT = 2, MOST_STATIONS = 4, LETTERS_WAIT_US = 1000 };
 typedef struct options {
     unsigned long port, id_base;
     char rate; /* '0' … '8', 0: any */
-    bool once, shared;
+    bool once, shared, with_parent;
     const char *interface; /* of SocketCAN, NULL: none */
     const char *key;       /* file, NULL: everybody commands */
 } options;
@@ -69,7 +69,7 @@ static void hear_the_end(sigset_t *heard) {
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
-    "       [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n"
+    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n"
     "\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
     "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
@@ -78,6 +78,7 @@ static const char help[] =
     "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
     "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
+    "  --with-parent    end when standard input ends: a pipe of a program that starts the node and may be killed\n"
     "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
     "  --socketcan IF   serve a CAN interface of Linux instead, such as can0, which must be up: no port is opened\n"
     "  --key FILE       take commands only with codes by the key in FILE, 32 hexadecimal digits (docs/secure.md)\n"
@@ -203,14 +204,22 @@ static void watch(int number, fd_set *set, int *end) {
     if (number >= *end) *end = number + 1;
 }
 
+/* A parent that ends in any way, also by SIGKILL, closes its end of the pipe; what it writes has no meaning. */
+static void look_at_parent(int parent) {
+    char bytes[256];
+    const ssize_t count = read(parent, bytes, sizeof bytes);
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) is_over = SIGHUP;
+}
+
 /* pselect() waits to the microsecond on every system with POSIX; ppoll() is not everywhere. */
-static void wait_for_work(const board *port, int listening, const sigset_t *heard) {
+static void wait_for_work(const board *port, int listening, int parent, const sigset_t *heard) {
     uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     fd_set readable, writable;
     int end = 0;
     FD_ZERO(&readable);
     FD_ZERO(&writable);
     watch(listening, &readable, &end);
+    watch(parent, &readable, &end);
     watch(port->refused, &readable, &end);
     for (int k = 0; k < port->stations; k++) {
         if (may_send(port, &port->station[k]))
@@ -220,7 +229,8 @@ static void wait_for_work(const board *port, int listening, const sigset_t *hear
         if (port->station[k].out_count > 0) watch(port->station[k].socket, &writable, &end);
     }
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    pselect(end, &readable, &writable, NULL, &timeout, heard);
+    const int ready = pselect(end, &readable, &writable, NULL, &timeout, heard);
+    if (parent >= 0 && ready > 0 && FD_ISSET(parent, &readable)) look_at_parent(parent);
 }
 
 static void send_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT); }
@@ -269,7 +279,7 @@ static bool is_full(const board *port) {
     return true;
 }
 
-/* Until a signal ends it, or with --once the first client leaves. */
+/* Until a signal ends it, with --with-parent the parent does, or with --once the first client leaves. */
 static void serve(board *port, int listening, const options *settings) {
     sigset_t heard;
     hear_the_end(&heard);
@@ -280,7 +290,7 @@ static void serve(board *port, int listening, const options *settings) {
         station_clear(&port->station[k], settings->rate);
     }
     while (!is_over) {
-        wait_for_work(port, listening, &heard);
+        wait_for_work(port, listening, settings->with_parent ? STDIN_FILENO : -1, &heard);
         const bool was_full = is_full(port);
         for (int k = 0; k < port->stations; k++)
             if (serve_station(port, &port->station[k], listening, settings->rate) && settings->once) return;
@@ -336,6 +346,8 @@ static int parse(int count, char **words, options *settings) {
             settings->once = true;
         } else if (strcmp(words[k], "--shared") == 0) {
             settings->shared = true;
+        } else if (strcmp(words[k], "--with-parent") == 0) {
+            settings->with_parent = true;
         } else if (strcmp(words[k], "--socketcan") == 0) {
             if (*value == 0) return complain("--socketcan", "name a CAN interface, such as can0");
             settings->interface = value;
@@ -359,6 +371,8 @@ static int parse(int count, char **words, options *settings) {
             return complain(words[k], "unknown option; see --help");
         }
     }
+    if (settings->with_parent && settings->interface != NULL)
+        return complain("--with-parent", "watches a node on a port; leave it out with --socketcan");
     return 0;
 }
 
@@ -430,9 +444,10 @@ int main(int count, char **words) {
     int bad = parse(count, words, &settings);
     if (bad == 0) bad = guard(&port, &settings);
     if (bad != 0) return bad;
-    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed(),
-                                        laconic_drive_protocol_by_number};
-    laconic_node_init(&port.node, &config, now_us());
+    const laconic_node_config config = {(uint16_t)settings.id_base, LACONIC_NODE_CAN_FD != 0, laconic_method_by_number,
+                                        nonce_seed(), laconic_drive_protocol_by_number};
+    if (!laconic_node_init(&port.node, &config, now_us()))
+        return complain("--id-base", "give a multiple of 32 from 0 to 0x7E0");
     laconic_integrity_begin(&port.integrity, &port.node, &config, &any_finite_number, LACONIC_INTEGRITY_ALL);
     if (settings.interface != NULL) return serve_interface(&port, settings.interface);
     signal(SIGPIPE, SIG_IGN); /* a client that has gone is noticed by reading from it */
