@@ -71,11 +71,9 @@ def common_line(axles: Sequence[Line]) -> Line | None:
 
 
 def _directions(axles: Sequence[Line]) -> list[Array]:
-    """Those that a common line may have: the body's axes, the mean of the axles, from one wheel to the farthest."""
-    found = [np.array([0.0, 1.0]), np.array([1.0, 0.0])]
-    same_sense = [each.direction * (1.0 if each.direction @ axles[0].direction >= 0.0 else -1.0) for each in axles]
-    mean = np.sum(same_sense, axis=0)
-    found.append(mean / np.linalg.norm(mean))
+    """Those that a common line may have: the body's axes, that of each axle, from one wheel to the farthest. A mean is
+    not among them: it would be near to axles that differ by twice as much."""
+    found = [np.array([0.0, 1.0]), np.array([1.0, 0.0]), *(each.direction for each in axles)]
     if len(axles) > 1:
         one, other = max(combinations([each.point for each in axles], 2), key=lambda pair: np.linalg.norm(
             pair[0] - pair[1]))
@@ -134,8 +132,9 @@ def misses_by(lines: Sequence[Line], point: Array) -> tuple[int, float]:
 
 
 def words_of(angle_rad: float, offset_m: float) -> str:
-    """Both numbers."""
-    return f"{np.degrees(angle_rad):.3g}° and {1e3 * offset_m:.3g} mm"
+    """Both numbers, without the rounding of computations."""
+    angle, offset = (0.0 if value <= least else value for value, least in ((angle_rad, EXACT_RAD), (offset_m, EXACT_M)))
+    return f"{np.degrees(angle):.3g}° and {1e3 * offset:.3g} mm"
 
 
 def nearly_one_line(scene: Scene) -> list[str]:

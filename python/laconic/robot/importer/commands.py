@@ -11,7 +11,6 @@ from laconic.robot.importer.xml_file import Element
 STATE_ALONE = "JointState"  # of a hardware interface that commands nothing
 GEARS = ("mechanicalReduction", "mechanical_reduction")
 WATCHES = ("state", "sensor", "imu", "camera", "laser", "ray")  # in the names of plugins that command nothing
-BY_ORDER = "mimics"
 
 
 def commands_of(root: Element, joints: Collection[str]) -> dict[str, list[Command]]:
@@ -37,7 +36,7 @@ def with_mimics(found: dict[str, list[Command]], masters: Mapping[str, str]) -> 
             seen.add(above)
             above = masters[above]
         if found.get(above) and joint not in found:
-            found[joint] = [Command(f"{BY_ORDER} {masters[joint]}")]
+            found[joint] = [Command(f"joint {masters[joint]}, which it mimics")]
     return found
 
 

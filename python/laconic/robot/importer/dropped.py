@@ -53,7 +53,7 @@ def _limits(wheels: Iterable[FoundWheel]) -> list[str]:
         if wheel.joint.left_out:
             by_words.setdefault(" and ".join(wheel.joint.left_out), []).append(wheel.name)
     each = [f"{words} ({listed(names)})" for words, names in by_words.items()]
-    return [f"of joints is left out: {'; '.join(each)}"] if each else []
+    return [f"left out of joints: {'; '.join(each)}"] if each else []
 
 
 def _surfaces(wheels: Iterable[FoundWheel]) -> list[str]:

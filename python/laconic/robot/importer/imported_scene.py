@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.core import load
 from laconic.errors import BadInput, Refused
 from laconic.robot.importer.answers import Answers
 from laconic.robot.importer.axle_lines import brought_to_meet, straightened
@@ -78,6 +79,9 @@ def import_robot(path: Path, answers: Answers) -> Imported:
     robot = read_robot(path, answers)
     ground = find_wheels(robot, answers)
     answers.check([wheel.name for wheel in ground.wheels])
+    if len(ground.wheels) > (room := load("double").max_wheels):
+        raise BadInput(f"{path}: has {len(ground.wheels)} wheels, and this build of the core has room for {room}; give "
+                       "--wheel JOINT for those that count")
     wheels, straight = straightened(ground.wheels)
     kinds = kinds_of(str(path), wheels, answers)
     if all(kind.kind == "fixed" for kind in kinds):
@@ -191,9 +195,19 @@ class _Writer:
         except Refused as refused:
             if refused.status in NEED_SLIP:
                 raise BadInput(f"{self.robot.path}: {NEED_SLIP[refused.status]}; give --friction MU, so that wheels "
-                               "may slip, or --rollers for wheels that have them") from None
+                               "may slip, or --rollers for wheels that have them"
+                               f"{self.hindering(refused)}") from None
             raise
         return scene
+
+    def hindering(self, refused: Refused) -> str:
+        """The wheel that the core names, and by how much it hinders."""
+        names = [wheel.name for wheel in self.ground.wheels]
+        if not 0 < refused.item <= len(names):
+            return ""
+        if refused.status == "straight only":
+            return f" (the axle of {names[refused.item - 1]} lies {refused.value:.3g} m beside that of {names[0]})"
+        return f" ({names[refused.item - 1]} would slide by {100.0 * refused.value:.3g} % of its way)"
 
     def head(self) -> list[str]:
         """What the scene is, and what was left open."""
@@ -208,8 +222,10 @@ class _Writer:
 
     def gear(self) -> str:
         """The line of the gear ratio, with what the file tells of it."""
-        gears = {command.gear: command.what for wheel in self.ground.wheels for command in wheel.joint.commands
-                 if command.gear}
+        gears: dict[float, str] = {}
+        for command in (each for wheel in self.ground.wheels for each in wheel.joint.commands):
+            if command.gear:
+                gears.setdefault(command.gear, command.what)
         return GEAR + (f"      # {', '.join(f'{gear:g} ({what})' for gear, what in gears.items())}" if gears else "")
 
     def vehicle(self) -> dict[str, Any]:

@@ -18,7 +18,8 @@ from laconic.robot.importer.placement import Array
 
 PREFIXES = ("package://", "model://", "file://")
 MARKS = ("package.xml", "manifest.xml", "model.config")  # of the folder of a ROS package or a Gazebo model
-INNER = ("urdf", "xacro", "robots", "robot", "sdf", "mjcf", "xml")  # folders beside which meshes usually lie
+INNER = ("urdf", "xacro", "robots", "sdf", "mjcf", "xml")  # folders beside which those of meshes usually lie
+BESIDE = ("meshes", "mesh", "assets", "stl", "materials")
 LEVELS = 6  # up to the folder of a package
 
 
@@ -54,7 +55,7 @@ class MeshFiles:
 
     def _outside(self, path: Path) -> str:
         """What a file is that neither the robot's folder nor a package has; empty for others. It is not opened."""
-        inside = [own_folder(self.robot), *self.packages.values(), *self.found.values()]
+        inside = [*own_folders(self.robot), *self.packages.values(), *self.found.values()]
         if is_inside(path, inside):
             return ""
         return "lies outside the robot's folder and is not opened; --package NAME=FOLDER says where it may lie"
@@ -107,7 +108,7 @@ class MeshFiles:
             for level, above in enumerate(self.robot.resolve().parents):
                 if above.name == name and _is_package(above, level):
                     return self.found.setdefault(name, above)
-                if (above / name).is_dir() and (is_inside(above / name, [own_folder(self.robot)])
+                if (above / name).is_dir() and (is_inside(above / name, own_folders(self.robot))
                                                 or _is_marked(above / name)):
                     return self.found.setdefault(name, above / name)
         return None
@@ -121,11 +122,14 @@ class MeshFiles:
         return str(folder)
 
 
-def own_folder(robot: Path) -> Path:
-    """The folder whose files belong to a robot: its package's, else its own, or that around a folder such as `urdf`."""
+def own_folders(robot: Path) -> list[Path]:
+    """The folders whose files belong to a robot: its package's, or else its own, and those of meshes beside a folder
+    such as `urdf`."""
     folder = robot.resolve().parent
     marked = next((each for each in [folder, *folder.parents][:LEVELS] if _is_marked(each)), None)
-    return marked or (folder.parent if folder.name in INNER and len(folder.parts) > 2 else folder)
+    if marked:
+        return [marked]
+    return [folder, *(folder.parent / each for each in BESIDE if folder.name in INNER)]
 
 
 def is_inside(path: Path, folders: Iterable[Path]) -> bool:

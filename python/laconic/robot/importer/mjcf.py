@@ -30,7 +30,7 @@ from laconic.robot.importer.robot_tree import (
     Shape,
     check_count,
 )
-from laconic.robot.importer.xml_file import xml_root
+from laconic.robot.importer.xml_file import bytes_of, xml_root
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
 SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
@@ -40,6 +40,7 @@ MUJOCO = Library("MuJoCo", "the count of a <replicate> or <composite>, a mesh, t
 
 def read_mjcf(path: Path, packages: Mapping[str, Path], model_name: str | None) -> Robot:
     """The heaviest body that stands in the world, or the one of this name, with all that hangs on it."""
+    check_count(path, bytes_of(path).count(b"<body"))
     check_files(path, packages)
     robot: Robot = bounded(MUJOCO, _read, path, model_name)
     return robot

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from laconic.errors import BadInput
-from laconic.robot.importer.meshes import is_inside, own_folder
+from laconic.robot.importer.meshes import is_inside, own_folders
 from laconic.robot.importer.xml_file import Element, bytes_of, root_of
 
 OF_MESHES = ("meshdir", "assetdir")
@@ -17,7 +17,7 @@ MOST_FILES = 1000  # that include each other
 
 def check_files(path: Path, packages: Mapping[str, Path]) -> None:
     """BadInput for a mesh, texture or included file that lies elsewhere; `packages`: folders that may be read, too."""
-    inside = [own_folder(path), *packages.values()]
+    inside = [*own_folders(path), *packages.values()]
     models = {path.resolve(): path}
     for model in (waiting := [path]):  # which grows meanwhile
         for other in _check_model(path, model, inside):

@@ -74,11 +74,18 @@ class Shape:
         """Its lowest point, in the middle of those that are equally low but for rounding of its tilt."""
         if self.kind == "sphere":
             return np.asarray(self.placed[:3, 3] - [0.0, 0.0, self.size[0]])
-        points = self.outline()
-        lowest = points[:, 2].min()
-        low = points[points[:, 2] <= lowest + 1e-6 + TILT * float(np.ptp(points[:, :2], axis=0).max())]
+        low = self._low()
         x, y, _ = (low.min(axis=0) + low.max(axis=0)) / 2.0
-        return np.array([x, y, lowest])
+        return np.array([x, y, low[:, 2].min()])
+
+    def flat_m(self) -> float:
+        """The shorter edge of the face that it has on the ground: 0 for one that touches it in a point or a line."""
+        return 0.0 if self.kind == "sphere" else float(np.ptp(self._low()[:, :2], axis=0).min())
+
+    def _low(self) -> Array:
+        points = self.outline()
+        tilt_m = TILT * float(np.ptp(points[:, :2], axis=0).max())
+        return np.asarray(points[points[:, 2] <= points[:, 2].min() + 1e-6 + tilt_m])
 
     def across(self, point: Array, axis: Array) -> Array:
         """N × 2 points of its outline, seen along the unit vector `axis` from `point`; of a sphere that of its largest

@@ -61,6 +61,7 @@ USUAL_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.8)  # of the format, where a file gives n
 LIMITS = {"limit/effort": "effort limit {:g} N·m", "limit/velocity": "speed limit {:g} rad/s",
           "dynamics/spring_stiffness": "spring of {:g} N·m/rad"}
 NO_LIMIT = 1e15  # what the format has for one that is not given is larger
+GEARBOX = "gearbox"
 TWO_AXES = ("universal", "revolute2")
 FIRST, SECOND = "axis", "axis2"
 OLD_AXES = ("1.0", "1.1", "1.2", "1.3", "1.4")  # versions in which axes are in the frame of the model
@@ -93,6 +94,9 @@ def _model(path: Path, root: Element, name: str | None) -> tuple[Element, list[s
         uri = _text(included, "uri") or "a file"
         raise BadInput(f"{path}: has no links but those of <include> {uri}, which is not read; give the file of that "
                        "model")
+    if not models and every and name is None:
+        raise BadInput(f"{path}: all models are static ({listed([str(each.get('name')) for each in every])}), as "
+                       "ground and walls are; name the robot with --model")
     if len(models) != 1:
         names = ", ".join(str(each.get("name")) for each in (models or every)[:6])
         raise BadInput(f"{path}: has {len(models)} models with links{f' ({names})' if names else ''}; name one with "
@@ -139,7 +143,7 @@ class _Model:
     def __init__(self, path: Path, model: Element, files: MeshFiles, gravity_m_per_s2: list[float],
                  remarks: list[str]):
         self.path, self.model, self.files, self.gravity_m_per_s2 = path, model, files, gravity_m_per_s2
-        self.remarks = [*remarks, *self._nested()]
+        self.remarks = [*remarks, *self._nested(), *self._gearboxes()]
         for part in (*model.findall("link"), *model.findall("joint")):
             refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}
@@ -175,6 +179,12 @@ class _Model:
                                "that move, which is not read; put its links into it")
             remarks.append(f"<{each.tag}> {name} is not read; its mass is not counted")
         return remarks
+
+    def _gearboxes(self) -> list[str]:
+        """A remark on each joint that couples two others."""
+        return [f"joint {each.get('name')} is a gearbox of ratio {_text(each, 'gearbox_ratio') or '1'}, which is left "
+                "out: each wheel turns on its own" for each in self.model.findall("joint")
+                if each.get("type") == GEARBOX]
 
     def _is_of_nested(self, joint: Element) -> bool:
         """Whether it holds a link of a model inside, which is left out."""
@@ -214,7 +224,8 @@ class _Model:
         """The tree, in the frame of its base."""
         for name in self.frames:
             self.frame(name)  # also one that nothing stands in must be somewhere
-        ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()}
+        ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()
+                if each.get("type") != GEARBOX}
         tree = tree_of(self.links, {name: end for name, end in ends.items() if "world" not in end})
         real = tree.ends
         base = base_of(self.path, tree.links, [child for _, child in real.values()])
@@ -314,7 +325,8 @@ class _Model:
         if kind is BALL and element.get("type") in TWO_AXES and element.find(SECOND) is not None:
             kind = HINGE
         if kind is None:
-            raise BadInput(f"{where}: type {element.get('type')} is not known; known are {', '.join(KINDS)}")
+            given_type = element.get("type") or "(none)"
+            raise BadInput(f"{where}: type {given_type} is not known; known are {', '.join(KINDS)}")
         frame, axis = back @ self.frame(self._frame_of(name)), np.zeros(3)
         given = element.find(which)
         if kind in (HINGE, SLIDE):

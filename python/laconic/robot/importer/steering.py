@@ -10,7 +10,7 @@ import numpy as np
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import HINGE, Joint, Robot
 
-UPRIGHT = np.cos(np.radians(10.0))  # of a swivel's axis
+UPRIGHT = np.cos(np.radians(20.0))  # of a swivel's axis: kingpins of cars are inclined by up to 15°
 NARROW_RAD = np.pi  # a caster turns farther than this
 NO_TRAIL, NO_TRAIL_M = 0.05, 1e-3  # of the wheel's radius, and at least
 NEAR = 2.0  # times its radius: a wheel that trails farther is carried by a body, not by a fork

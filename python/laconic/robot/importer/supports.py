@@ -17,6 +17,7 @@ TOUCHES, TOUCHES_M = 0.05, 3e-3  # of the smallest wheel's radius above the grou
 BELOW = 0.2
 BESIDE = 0.5  # of a wheel's radius: how far what belongs to a wheel reaches beside it
 THIN, THIN_M = 0.05, 2e-3  # of the smallest wheel's radius, or of any: a marker
+LARGE = 2.0  # times the smallest wheel's radius: a face on the ground that is no caster's
 MARKERS = ("footprint", "ground", "odom", "map", "world")  # in names of links that only mark a place
 CARRIES = ("caster", "castor", "ball", "wheel", "skid", "support", "foot", "slider", "glide")
 NEAR_M = 5e-3  # points of one link that are nearer are one
@@ -73,6 +74,8 @@ def _why_none(link: Link, shape: Shape, ground: Ground, smallest_m: float) -> st
         return "by its name it marks a place"
     if not shape.collides:
         return "its shape is only seen; give it a <collision> if it carries a load"
+    if (flat := shape.flat_m()) > LARGE * smallest_m:
+        return f"it lies flat on the ground over {flat:.3g} m and more, as a body does"
     if (thin := shape.thinnest()) < max(THIN * smallest_m, THIN_M):
         return f"its shape is {1e3 * thin:.3g} mm thin, as a marker is"
     if wheel := next((each for each in (*ground.wheels, *ground.casters) if _is_at(each, shape.lowest())), None):

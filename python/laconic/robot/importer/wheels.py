@@ -18,6 +18,7 @@ from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of
 from laconic.robot.importer.wheel_shape import Reach, chosen_shapes, reach_of, skew_of
 
 OF_PACKAGES = ("package://", "model://")
+MOST_WHEELS = 64  # with casters; the core has room for fewer
 MOST_NAMED = 3  # meshes in a message
 LEVEL = np.sin(np.radians(10.0))  # the steepest axle of a wheel
 CAMBER = np.sin(np.radians(0.2))  # what is less is rounding
@@ -101,10 +102,14 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
             remarks.append(f"joint {joint.name} turns on a level axle, {1e3 * above:.0f} mm above the ground, and is "
                            "no wheel; "
                            f"--wheel JOINT for each wheel would say otherwise")
+    if len(reaching) > MOST_WHEELS:
+        raise BadInput(f"{robot.path}: {len(reaching)} joints have shapes that reach the ground, more than "
+                       f"{MOST_WHEELS} wheels; give --wheel JOINT for each wheel")
     tables = turntables(robot, [(joint, reach.radius_m) for joint, reach in reaching])
     found = [_wheel(robot, joint, reach, answers, named, tables) for joint, reach in reaching]
     wheels, casters = _apart(found, answers, bool(named))
     if not wheels:
+        _check_known(robot, measured, are_all=True)
         raise BadInput(f"{robot.path}: {_all_swivel(casters)}")
     _check_places(robot, wheels)
     remarks += [f"joint {table.name} carries all wheels; it is held in its zero position" for table in tables]
@@ -142,9 +147,11 @@ def _no_wheel_by_shape(robot: Robot, joint: Joint, reach: Reach | None, answers:
     return ""
 
 
-def _check_known(robot: Robot, measured: Sequence[tuple[Joint, Reach | None]]) -> None:
-    """BadInput for joints without a radius that by their name or their height are wheels."""
-    lost = [joint for joint, reach in measured if reach is None and _may_be_wheel(robot, joint, measured)]
+def _check_known(robot: Robot, measured: Sequence[tuple[Joint, Reach | None]], are_all: bool = False) -> None:
+    """BadInput for joints without a radius that by their name or their height are wheels; `are_all`: for all whose
+    meshes are not there."""
+    lost = [joint for joint, reach in measured if reach is None
+            and (_unread(robot, [joint]) if are_all else _may_be_wheel(robot, joint, measured))]
     if not lost:
         return
     has_shapes = _has_shapes(robot, lost[0]) and not _unread(robot, lost)
@@ -191,7 +198,8 @@ def _check_places(robot: Robot, wheels: Sequence[FoundWheel]) -> None:
         there[place] = wheel.name
 
 
-WHEELS = ("wheel", "tire", "tyre", "drive")  # in names
+WHEELS = ("wheel", "tire", "tyre")  # in names
+DRIVES = ("drive", "omni", "mecanum")  # the same of a joint whose mesh is not there
 
 
 def _may_be_wheel(robot: Robot, joint: Joint, measured: Sequence[tuple[Joint, Reach | None]]) -> bool:
@@ -200,6 +208,8 @@ def _may_be_wheel(robot: Robot, joint: Joint, measured: Sequence[tuple[Joint, Re
     if any(word in each.lower() for word in WHEELS for each in (joint.name, *(link.name for link in links))):
         return True
     is_unread = any(link.unread for link in links)
+    if is_unread and any(word in joint.name.lower() for word in DRIVES):
+        return True
     return any(reach and (abs(joint.point_m[2] - other.point_m[2]) < 0.1 * reach.radius_m
                           or (is_unread and joint.point_m[2] < other.point_m[2])) for other, reach in measured)
 

@@ -126,7 +126,7 @@ def _old_definition(name: str) -> str:
     for file in dict.fromkeys(each for each in (*(xacro.all_includes or ()), *(xacro.filestack or ())) if each):
         with suppress(OSError, UnicodeDecodeError, ValueError):
             if re.search(rf'<property\s[^>]*name="{re.escape(name)}"', Path(file).read_text(encoding="utf-8")):
-                return f" as {file} writes <property> for <xacro:property>"
+                return f", as {file} writes <property> for <xacro:property>"
     return ""
 
 

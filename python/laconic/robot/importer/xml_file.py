@@ -11,6 +11,7 @@ from laconic.errors import BadInput, reason_of
 
 Element = ElementTree.Element
 MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual robot
+MOST_TAGS = 1_000_000  # that open or close an element
 
 
 def xml_root(path: Path, why_not: str) -> Element:
@@ -36,6 +37,8 @@ def bytes_of(path: Path) -> bytes:
 def root_of(path: Path, text: bytes | str, why_not: str) -> Element:
     """The same of a text that is there. Prefixes stay parts of names, since many files use some that they do not
     declare."""
+    if (tags := text.count(b"<") if isinstance(text, bytes) else text.count("<")) > MOST_TAGS:
+        raise BadInput(f"{path}: has {tags} tags, more than the {MOST_TAGS} that are read; give the file of a robot")
     builder = ElementTree.TreeBuilder()
     parser = expat.ParserCreate()
     parser.buffer_text = True
