@@ -11,7 +11,7 @@ from laconic_fmu.licences import ziglang_in
 from laconic_packages.facts import facts, placeholders
 from laconic_release.collect import Made, collect
 from laconic_release.parts import Places
-from laconic_release.tree import NoRelease, tree_of
+from laconic_release.tree import NoRelease, check_tools, tree_of
 
 MEGABYTE = 1e6
 
@@ -20,6 +20,7 @@ def main() -> int:
     """Status 2 with one line where no release can be made."""
     given = parse()
     try:
+        check_tools(given.wasm_clang, given.cross)
         made = collect(tree_of(given.project), facts(), given.build, given.dist, places_of(given), compilers(given))
     except NoRelease as why:
         print(f"laconic: release: {why}", file=sys.stderr)
