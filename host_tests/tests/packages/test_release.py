@@ -206,8 +206,8 @@ def test_all_tools_that_a_release_lacks_are_named_at_once(tmp_path: Path, monkey
     monkeypatch.setenv("PATH", str(here))
     with pytest.raises(NoRelease) as why:
         check_tools("clang", tmp_path)
-    assert str(why.value).startswith("this machine lacks git, a clang with WebAssembly, its linker wasm-ld, the compiler "
-                                     "for other platforms (the build fetches ziglang); install what is missing")
+    assert str(why.value).startswith("this machine lacks git, a clang with WebAssembly, its linker wasm-ld, the compi"
+                                     "ler for other platforms (the build fetches ziglang); install what is missing")
     for name in ("git", "clang", "wasm-ld"):
         put(here / name, "")
         (here / name).chmod(0o755)
@@ -230,7 +230,8 @@ def test_the_build_names_all_tools_that_a_release_lacks(tmp_path: Path, there: t
         "set(CMAKE_FIND_USE_CMAKE_SYSTEM_PATH OFF)", *lines,
         f'add_subdirectory("{Path(checksums.__file__).parents[1]}" release)']))
     folder = tmp_path / "build"
-    told = subprocess.run(["cmake", "-S", str(tmp_path), "-B", str(folder)], capture_output=True, text=True, check=True)
+    told = subprocess.run(["cmake", "-S", str(tmp_path), "-B", str(folder)], capture_output=True, text=True,
+                          check=True)
     assert f"no release: this machine lacks {lacking}\n" in told.stdout
     done = subprocess.run(["cmake", "--build", str(folder), "--target", "laconic_release"], capture_output=True,
                           text=True, check=False)
