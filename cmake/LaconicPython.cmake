@@ -1,11 +1,10 @@
-# The Python environment: target `laconic_venv` and its interpreter LACONIC_PYTHON.
+# The Python environment and its interpreter LACONIC_PYTHON. Target `laconic_venv`: what the main job imports
+# (python/requirements-demo.txt) and our own packages, editable. Target `laconic_venv_all`: also what all commands and
+# tests import (python/requirements.txt), in the same environment.
 #
-# Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file. The
-# target belongs to the top folder, so that Make begins with it: C that does not need it is compiled meanwhile.
-#
-# It holds exactly what host_tests/requirements.txt locks, and our own packages, editable: `laconic`, and those that
-# make tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV lies in another tree only
-# uses that environment; the other tree keeps it up to date.
+# Depend on the targets, not on the stamp files: Make would run the rule once in every target that names the file. The
+# targets belong to the top folder, so that Make begins with them: C that does not need them is compiled meanwhile. A
+# build tree whose LACONIC_VENV lies in another tree only uses that environment; the other tree keeps it up to date.
 
 find_package(Python3 3.10 COMPONENTS Interpreter)
 if(NOT Python3_Interpreter_FOUND)
@@ -21,9 +20,9 @@ set(LACONIC_PYTHON "${LACONIC_VENV_BIN}/python${CMAKE_EXECUTABLE_SUFFIX}")
 set(LACONIC_COMMAND "${LACONIC_VENV_BIN}/laconic${CMAKE_EXECUTABLE_SUFFIX}")
 set(LACONIC_VENV_STAMP "${LACONIC_VENV}/laconic.stamp")
 
-set(host "${PROJECT_SOURCE_DIR}/host_tests")
-set(own_packages "${host}" "${PROJECT_SOURCE_DIR}/fmu" "${PROJECT_SOURCE_DIR}/firmware_stub" "${PROJECT_SOURCE_DIR}/page"
-    "${PROJECT_SOURCE_DIR}/packages/python")
+set(all_stamp "${LACONIC_VENV}/all.stamp")
+set(python "${PROJECT_SOURCE_DIR}/python")
+set(own_packages "${python}" "${PROJECT_SOURCE_DIR}/packaging")
 set(own_projects ${own_packages})
 list(TRANSFORM own_projects APPEND "/pyproject.toml")
 # rewritten, and the packages installed anew, only when the version changes: it stands in their metadata
@@ -42,11 +41,20 @@ if(venv_is_ours)
     add_custom_command(
         OUTPUT "${LACONIC_VENV_STAMP}"
         COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
-                --requirements "${host}/requirements.txt" --packages ${own_packages} --stamp "${LACONIC_VENV_STAMP}"
-        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" ${own_projects} "${version_file}"
-        COMMENT "Python environment" USES_TERMINAL VERBATIM)
+                --requirements "${python}/requirements-demo.txt" --packages ${own_packages} --stamp "${LACONIC_VENV_STAMP}"
+        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${python}/requirements-demo.txt" ${own_projects}
+                "${version_file}"
+        COMMENT "Python environment of the main job" VERBATIM)
+    add_custom_command(
+        OUTPUT "${all_stamp}"
+        COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
+                --requirements "${python}/requirements.txt" --stamp "${all_stamp}"
+        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${python}/requirements.txt" "${LACONIC_VENV_STAMP}"
+        COMMENT "Python environment of all commands and tests" VERBATIM)
 elseif(NOT EXISTS "${LACONIC_VENV_STAMP}")
     message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} does not exist: build the tree that it belongs to first")
 endif()
 add_custom_target(laconic_venv ALL DEPENDS "${LACONIC_VENV_STAMP}")
 add_dependencies(laconic_venv laconic_venv_pip)
+add_custom_target(laconic_venv_all ALL DEPENDS "${all_stamp}")
+add_dependencies(laconic_venv_all laconic_venv)

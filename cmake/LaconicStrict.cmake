@@ -36,13 +36,18 @@ if(LACONIC_HAS_STRICT_ARRAYS)
     set(LACONIC_STRICT_ARRAYS -fstrict-flex-arrays=3)
 endif()
 
+# Part of no group of sanitizers, in gcc and clang: a number beyond the range of an integer it is converted to.
+if(LACONIC_SANITIZE MATCHES "undefined")
+    set(LACONIC_SANITIZE_CASTS -fsanitize=float-cast-overflow)
+endif()
+
 # Sanitizers and coverage where LACONIC_SANITIZE and LACONIC_COVERAGE set them, also for code that is not ours.
 function(laconic_instrument target)
     if(LACONIC_SANITIZE)
         # -O0: sanitizers see every access, none that was optimised away, and gcc takes a tenth of the time for the
         # lanes of a batch.
-        target_compile_options(${target} PRIVATE -fsanitize=${LACONIC_SANITIZE} -fno-sanitize-recover=all -O0 -g
-                                                 ${LACONIC_STRICT_ARRAYS})
+        target_compile_options(${target} PRIVATE -fsanitize=${LACONIC_SANITIZE} ${LACONIC_SANITIZE_CASTS}
+            -fno-sanitize-recover=all -O0 -g ${LACONIC_STRICT_ARRAYS})
         target_link_options(${target} PUBLIC -fsanitize=${LACONIC_SANITIZE})
     endif()
     if(LACONIC_COVERAGE)

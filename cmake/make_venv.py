@@ -21,6 +21,7 @@ def main() -> int:
         python = next(path for path in candidates(arguments.venv) if path.exists())
         if arguments.requirements:
             install_locked(python, arguments.requirements)
+        if arguments.packages:
             own = [word for folder in arguments.packages for word in ("--editable", str(folder))]
             pip(python, "install", "--no-build-isolation", "--no-deps", *own)
     except subprocess.CalledProcessError as failure:

@@ -1,6 +1,8 @@
-/* The headers whose functions Python calls. */
+/* The headers whose functions Python calls, without what checks a program's definitions (build.h). */
+#define LACONIC_IN_CORE
 #include "laconic/laconic.h"
 
+#include "laconic/articulated.h"
 #include "laconic/batch.h"
 #include "laconic/derivatives.h"
 #include "laconic/estimate.h"

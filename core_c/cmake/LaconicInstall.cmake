@@ -15,7 +15,7 @@ function(laconic_install)
         INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
     install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/include/laconic" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
         COMPONENT laconic_development FILES_MATCHING PATTERN "*.h")
-    install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/soft_double" DESTINATION "${CMAKE_INSTALL_DATADIR}/laconic"
+    install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/optional/soft_double" DESTINATION "${CMAKE_INSTALL_DATADIR}/laconic"
         COMPONENT laconic_development)
     set(package "${CMAKE_INSTALL_LIBDIR}/cmake/laconic")
     set(made "${CMAKE_CURRENT_BINARY_DIR}/package")

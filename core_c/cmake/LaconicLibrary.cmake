@@ -14,12 +14,33 @@ function(laconic_library real)
     add_library(${target} ${ARGN})
     add_library(laconic::${name} ALIAS ${target})
     target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>"
-        "$<INSTALL_INTERFACE:include>" PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/src")
+        "$<INSTALL_INTERFACE:include>" PRIVATE ${core_folders} ${optional_folders})
     target_compile_definitions(${target} PUBLIC $<$<STREQUAL:${real},single>:LACONIC_SINGLE>)
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME ${file} LINKER_LANGUAGE C
         VERSION ${LACONIC_VERSION} SOVERSION ${LACONIC_ABI} WINDOWS_EXPORT_ALL_SYMBOLS ON
         INTERFACE_LACONIC_REAL ${real} COMPATIBLE_INTERFACE_STRING LACONIC_REAL)
     laconic_compiled(${target})
+    laconic_names(${target} ${real})
+endfunction()
+
+# Double and single have the same names, and may be in one process, as in two plugins. So a static library brings no names
+# to the plugin that contains it, and names of a shared one have its scalar type and version as theirs.
+include(CheckLinkerFlag)
+set_property(GLOBAL PROPERTY LACONIC_ABI "${LACONIC_ABI}") # for other folders
+function(laconic_names target real)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL "STATIC_LIBRARY")
+        set_target_properties(${target} PROPERTIES C_VISIBILITY_PRESET hidden)
+        return()
+    endif()
+    set(names "${CMAKE_CURRENT_BINARY_DIR}/${target}.names")
+    get_property(abi GLOBAL PROPERTY LACONIC_ABI)
+    file(WRITE "${names}" "laconic_${real}_${abi} { global: laconic*; local: *; };\n")
+    check_linker_flag(C "-Wl,--version-script=${names}" LACONIC_LINKER_HAS_VERSIONS)
+    if(LACONIC_LINKER_HAS_VERSIONS)
+        target_link_options(${target} PRIVATE "-Wl,--version-script=${names}")
+        set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${names}")
+    endif()
 endfunction()
 
 # How the core's files are compiled. Code that is independent of its address can be linked into any library; on a

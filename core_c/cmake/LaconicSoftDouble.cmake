@@ -2,7 +2,7 @@
 # libgcc rounds some differences wrongly; the file's own conditions decide. docs/soft-double.md has the whole story.
 
 include(CheckCSourceCompiles)
-set(laconic_soft_double_file "${CMAKE_CURRENT_LIST_DIR}/../soft_double/soft_double.c")
+set(laconic_soft_double_file "${CMAKE_CURRENT_LIST_DIR}/../optional/soft_double/soft_double.c")
 
 function(laconic_soft_double target)
     if(MSVC)

@@ -7,7 +7,9 @@
 
 #define CODE_BYTES 8U
 
-void laconic_gate_init(laconic_gate *gate, uint32_t id_base, const uint8_t key[LACONIC_AES_BYTES]) {
+void LACONIC_GATE_BUILT(void) {}
+
+void(laconic_gate_init)(laconic_gate *gate, uint32_t id_base, const uint8_t key[LACONIC_AES_BYTES]) {
     memset(gate, 0, sizeof *gate);
     gate->id_base = id_base;
     laconic_cmac_key_of(&gate->key, key);
@@ -34,9 +36,11 @@ static bool take_code(laconic_gate *gate, const laconic_frame *frame, laconic_fr
         gate->bare++;
         return false;
     }
-    const laconic_secoc_status status =
-        laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &gate->freshness, held->data, held->length,
-                           frame->data + 1, LACONIC_SECOC_APART);
+    uint64_t freshness = gate->freshness;
+    laconic_secoc_status status = laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness,
+                                                     held->data, held->length, frame->data + 1, LACONIC_SECOC_APART);
+    if (freshness >> 32 != gate->freshness >> 32) status = LACONIC_SECOC_SPENT;
+    if (status == LACONIC_SECOC_OK) gate->freshness = freshness;
     gate->refused[status]++;
     *out = *held;
     return status == LACONIC_SECOC_OK;
@@ -49,7 +53,7 @@ bool laconic_gate_take(laconic_gate *gate, const laconic_frame *frame, laconic_f
     if (ours && needs_code(frame, offset)) {
         if (gate->waits) gate->bare++;
         gate->held = *frame;
-        gate->waits = frame->length <= LACONIC_FRAME_BYTES;
+        gate->waits = laconic_frame_fits(frame);
         return false;
     }
     *out = *frame;
@@ -63,15 +67,20 @@ void laconic_gate_sent(laconic_gate *gate, const laconic_frame *frame) {
     if (gate->freshness >> 32 != nonce) gate->freshness = (uint64_t)nonce << 32;
 }
 
+bool laconic_gate_is_spent(const laconic_gate *gate, const laconic_frame *frame) {
+    uint32_t offset;
+    return is_ours(gate, frame, &offset) && needs_code(frame, offset) && (uint32_t)gate->freshness == UINT32_MAX;
+}
+
 bool laconic_gate_seal(laconic_gate *gate, const laconic_frame *frame, laconic_frame *code) {
     uint32_t offset;
-    if (!is_ours(gate, frame, &offset) || !needs_code(frame, offset)) return false;
+    if (!is_ours(gate, frame, &offset) || !needs_code(frame, offset) || !laconic_frame_fits(frame)) return false;
+    if (laconic_gate_is_spent(gate, frame)) return false;
     memset(code, 0, sizeof *code);
     code->id = gate->id_base + LACONIC_GATE_OFFSET;
     code->length = CODE_BYTES;
     code->data[0] = (uint8_t)offset;
     gate->freshness++;
-    laconic_secoc_seal(&gate->key, number_of(gate, offset), gate->freshness, frame->data, frame->length, code->data + 1,
-                       LACONIC_SECOC_APART);
-    return true;
+    return laconic_secoc_seal(&gate->key, number_of(gate, offset), gate->freshness, frame->data, frame->length,
+                              code->data + 1, LACONIC_SECOC_APART);
 }

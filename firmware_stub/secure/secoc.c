@@ -5,9 +5,13 @@
 #define FRESHNESS_BYTES 8U
 
 const char *laconic_secoc_text(laconic_secoc_status status) {
-    static const char *const texts[] = {"accepted", "wrong key or changed message", "replayed message",
-                                        "old freshness"};
+    static const char *const texts[] = {"accepted", "wrong key or changed message", "replayed message", "old freshness",
+                                        "freshness used up"};
     return (unsigned)status < LACONIC_SECOC_STATUSES ? texts[status] : "unknown";
+}
+
+static bool has_code(size_t length, size_t code_bytes) {
+    return length <= LACONIC_SECOC_LONGEST && code_bytes <= LACONIC_AES_BYTES;
 }
 
 static void code_of(const laconic_cmac_key *key, uint16_t number, uint64_t freshness, const uint8_t *payload,
@@ -21,12 +25,14 @@ static void code_of(const laconic_cmac_key *key, uint16_t number, uint64_t fresh
     laconic_cmac(key, message, NUMBER_BYTES + length + FRESHNESS_BYTES, mac);
 }
 
-void laconic_secoc_seal(const laconic_cmac_key *key, uint16_t number, uint64_t freshness, const uint8_t *payload,
+bool laconic_secoc_seal(const laconic_cmac_key *key, uint16_t number, uint64_t freshness, const uint8_t *payload,
                         size_t length, uint8_t *trailer, size_t code_bytes) {
     uint8_t mac[LACONIC_AES_BYTES];
+    if (!has_code(length, code_bytes)) return false;
     code_of(key, number, freshness, payload, length, mac);
     trailer[0] = (uint8_t)freshness;
     for (size_t i = 0; i < code_bytes; i++) trailer[1 + i] = mac[i];
+    return true;
 }
 
 /* The least value above `last` with these lower bits. */
@@ -37,6 +43,7 @@ laconic_secoc_status laconic_secoc_open(const laconic_cmac_key *key, uint16_t nu
                                         size_t code_bytes) {
     uint8_t mac[LACONIC_AES_BYTES];
     const uint64_t newer = completed(*last, trailer[0]), older = newer - 256U;
+    if (!has_code(length, code_bytes)) return LACONIC_SECOC_WRONG_CODE;
     code_of(key, number, newer, payload, length, mac);
     if (newer > *last && laconic_same_bytes(mac, trailer + 1, code_bytes)) {
         *last = newer;

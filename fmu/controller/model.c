@@ -23,7 +23,7 @@ static double limited_V(const fmu_model *self, uint32_t i) {
     return wanted > self->limit_V ? self->limit_V : wanted < -self->limit_V ? -self->limit_V : wanted;
 }
 
-static fmu_status check(const fmu_instance *instance) {
+static fmu_status check_values(const fmu_instance *instance) {
     const fmu_model *self = &instance->model;
     if (!(self->limit_V > 0.0)) return fmu_refuse(instance, "voltage_limit_V: %g must be above 0", self->limit_V);
     if (!(self->proportional_Vs_per_rad >= 0.0))
@@ -38,7 +38,7 @@ void fmu_model_made(fmu_model *model) { (void)model; /* all controllers have the
 
 fmu_status fmu_model_start(fmu_instance *instance) {
     fmu_model *self = &instance->model;
-    const fmu_status status = check(instance);
+    const fmu_status status = check_values(instance);
     if (status != FMU_OK) return status;
     for (uint32_t i = 0; i < FMU_MODEL_LARGEST_ARRAY; i++) self->error_rad[i] = 0.0;
     self->start_needed = self->change_needed = false;
@@ -47,7 +47,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
 }
 
 fmu_status fmu_model_change(fmu_instance *instance) {
-    const fmu_status status = check(instance);
+    const fmu_status status = check_values(instance);
     if (status != FMU_OK) return status;
     instance->model.change_needed = false;
     instance->model.stale = FMU_GROUPS_ALL;

@@ -8,6 +8,10 @@
 
 #include "laconic_node/frame.h"
 
+#if !LACONIC_NODE_CAN_FD
+#error "laconic: FMUs with a bus read frames of CAN FD: compile them without LACONIC_NODE_CAN_FD=0"
+#endif
+
 enum ls_bus_code {
     LS_BUS_FORMAT_ERROR = 0x01,
     LS_BUS_CAN_TRANSMIT = 0x10,

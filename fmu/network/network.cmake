@@ -1,7 +1,8 @@
 # The FMUs with bus terminals: FMI 3 only, Co-Simulation only, with the glue of the others but its steps.
 
-set(network_glue instance.c lifecycle.c log.c variables.c cached_reals.c start_file.c clock.c saved_states.c stream.c
-    network/event_model.c network/step.c network/fmi3_clocks.c network/network_port.c network/ls_bus.c)
+set(network_glue instance.c lifecycle.c log.c variables.c cached_reals.c start_file.c clock.c saved_states.c stream.c)
+list(TRANSFORM network_glue PREPEND "glue/")
+list(APPEND network_glue network/event_model.c network/step.c network/fmi3_clocks.c network/network_port.c network/ls_bus.c)
 set(network_files "")
 foreach(name network_port.h ls_bus.h)
     list(APPEND network_files "${name}=${CMAKE_CURRENT_SOURCE_DIR}/network/${name}")
@@ -11,13 +12,14 @@ list(APPEND network_files "laconic_node/frame.h=${firmware}/include/laconic_node
 set(manifest "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml=${CMAKE_CURRENT_SOURCE_DIR}/network")
 
 # The node's sources, as a board compiles them, with the core's scalar type; the wire contract is generated.
-file(GLOB node_files CONFIGURE_DEPENDS RELATIVE "${firmware}" "${firmware}/src/*.[ch]" "${firmware}/drives/*.[ch]"
+file(GLOB node_files CONFIGURE_DEPENDS RELATIVE "${firmware}" "${firmware}/node/*.[ch]" "${firmware}/wire/*.[ch]"
+     "${firmware}/drives/*.[ch]"
      "${firmware}/drives/*/*.[ch]" "${firmware}/include/laconic_*/*.h")
-list(FILTER node_files EXCLUDE REGEX "library|slcan|/describe\\.") # for Python, serial lines and the EDS file
+list(FILTER node_files EXCLUDE REGEX "slcan|/describe\\.") # for serial lines and the EDS file
 list(REMOVE_ITEM node_files include/laconic_node/frame.h)
 set(node_named "")
 foreach(path ${node_files})
-    string(REGEX REPLACE "^(src|include)/" "" name "${path}")
+    string(REGEX REPLACE "^(node|wire|include)/" "" name "${path}")
     list(APPEND node_named "${name}=${firmware}/${path}")
 endforeach()
 set(wire "${PROJECT_BINARY_DIR}/firmware_stub/wire")
@@ -35,7 +37,7 @@ laconic_instrument(laconic_fmu_wire)
 foreach(target laconic_fmu_node laconic_fmu_wire)
     set_source_files_properties("${wire}/laconic_wire.c" "${wire}/laconic_dbc.c" PROPERTIES GENERATED TRUE)
     target_include_directories(${target} SYSTEM PRIVATE "${wire}")
-    target_include_directories(${target} PRIVATE "${firmware}/include" "${firmware}/src" "${firmware}/drives"
+    target_include_directories(${target} PRIVATE "${firmware}/include" "${firmware}/node" "${firmware}/drives"
         ${core_includes})
     add_dependencies(${target} laconic_wire_files)
 endforeach()
@@ -50,7 +52,7 @@ laconic_fmu(LaconicNode
     GLUE ${network_glue} network/can_controller.c
     FILES ${network_files} "can_controller.h=${CMAKE_CURRENT_SOURCE_DIR}/network/can_controller.h" ${node_named}
     OBJECTS laconic_fmu_node laconic_fmu_wire
-    INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include" "${firmware}/src" "${firmware}/drives" "${wire}"
+    INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include" "${firmware}/node" "${firmware}/drives" "${wire}"
     PARTS "${manifest}/node/parts/fmi-ls-manifest.xml"
     DEPENDS laconic_wire_files)
 

@@ -18,7 +18,7 @@ bool network_may_start(const fmu_instance *instance) {
     return false;
 }
 
-static fmu_status check(const fmu_instance *instance, double at_s, double step_s) {
+static fmu_status check_times(const fmu_instance *instance, double at_s, double step_s) {
     const double now_s = instance->model.time_s, off_s = magnitude(at_s - now_s);
     /* a sum of a million times is wrong by so much at most */
     const double most_s = OFF_BY + 1e6 * DBL_EPSILON * magnitude(at_s);
@@ -41,7 +41,7 @@ static fmu_status check(const fmu_instance *instance, double at_s, double step_s
 
 fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {
     fmu_model *model = &instance->model;
-    fmu_status status = check(instance, at_s, step_s);
+    fmu_status status = check_times(instance, at_s, step_s);
     end->early = false;
     if (status == FMU_OK) status = fmu_apply_parameters(instance);
     if (status == FMU_OK) {

@@ -42,7 +42,7 @@ static fmu_status discard_with(const fmu_instance *instance, const laconic_refus
 void fmu_model_made(fmu_model *model) { model->wheels_have_states = fmu_vehicle_slips(&model->vehicle); }
 
 /* Without step_s, Co-Simulation knows its internal step only at its first communication step, and Model Exchange never.
- * Until then the integrator is prepared for exact-flow, which accepts every step; a vehicle with friction has one
+ * Until then the integrator is prepared for a method that accepts every step; a vehicle with friction has one
  * method only, which does. */
 static laconic_status start_plant(fmu_model *self, laconic_refusal *why) {
     const laconic_method *method = laconic_method_by_number(self->method);

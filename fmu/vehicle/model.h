@@ -105,7 +105,7 @@ typedef struct fmu_model {
     bool change_needed;      /* tunable parameters were set since */
     bool states_changed;     /* by an event that no event iteration has reported yet */
     bool continuous;         /* Model Exchange                                */
-    bool stand_in;           /* the step is not known yet: the integrator is prepared for exact-flow */
+    bool stand_in;           /* the step is not known yet: the integrator is prepared for a method that takes any */
     bool wheels_have_states; /* by the start values of the FMU */
     bool idle_wheels;        /* some wheel has no motor       */
     bool watched;            /* `sensors` must see each internal step; else it is not set */

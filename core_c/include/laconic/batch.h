@@ -151,4 +151,11 @@ void laconic_batch_outputs(const laconic_batch *batch, int32_t first_lane, int32
 #ifdef __cplusplus
 }
 #endif
+
+#ifndef LACONIC_IN_CORE /* build.h */
+#define laconic_batch_kind_of(...) (laconic_check_build(), laconic_batch_kind_of(__VA_ARGS__))
+#define laconic_batch_kinds_of(...) (laconic_check_build(), laconic_batch_kinds_of(__VA_ARGS__))
+#define laconic_batch_place(...) (laconic_check_build(), laconic_batch_place(__VA_ARGS__))
+#endif
+
 #endif

@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-/* Sizes of an error of the state. */
+/* Sizes of an error of the state; infinity where one leaves the scalar type's range. */
 typedef struct laconic_error {
     laconic_real nu_rad_per_s;    /* of the component of ν that is farthest off */
     laconic_real place_m;         /* distance of the centre of mass S from its true place */

@@ -19,9 +19,10 @@
  *            back where the innovation tells that the reading is not to be believed.
  * Errors     a call that is refused changes nothing in the estimate.
  * Cost       docs/control.md, in instructions of a Cortex-M4F. A prediction needs the stack of a Jacobian
- *            (derivatives.h) and half a KB; on a Cortex-M4F, single, 2.3 KB with rk4 and 3.6 KB with what auto takes.
+ *            (derivatives.h) and half a KB; on a Cortex-M4F, single, 2.3 KB with an explicit method of fourth order
+ *            and 3.6 KB with what auto takes.
  * Links      every method with its derivatives, since auto may take most of them: some 110 KB of flash there.
- *            laconic_filter_predict_by() links one: 21 KB with rk4, 60 KB with what auto takes. */
+ *            laconic_filter_predict_by() links one: 21 KB with such a method, 60 KB with what auto takes. */
 #ifndef LACONIC_FILTER_H
 #define LACONIC_FILTER_H
 

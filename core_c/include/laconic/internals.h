@@ -42,9 +42,9 @@ typedef struct laconic_forcing_samples {
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 /* The values of laconic_integrator.chosen for laconic_auto; they cannot be prepared by themselves. */
 extern const struct laconic_method
-    laconic_auto_slow; /* exponential-gauss-8, else exact-flow-4, else exact-flow        */
+    laconic_auto_slow; /* where damping is slow beside the step: auto.c */
 extern const struct laconic_method
-    laconic_auto_fast; /* exponential-gauss-8, else exponential-kahan-4, else exact-flow */
+    laconic_auto_fast; /* where it is fast */
 #endif
 
 #ifdef __cplusplus

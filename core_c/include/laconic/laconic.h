@@ -51,9 +51,9 @@
  *                           ground.axle_friction_Nm dry friction. Any other torque is given as axle_torque_Nm, with
  *                           c1 = c2 = 0 where it replaces the motor's.
  *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
- *                           fixed wheel is no swivel caster: it does not swivel.)
- *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. (4.7) does not
- *                           describe Ackermann and swerve drives that steer while they move.
+ *                           fixed wheel is not a swivel caster: it does not swivel.) articulated.h has casters that do.
+ *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. Wheels that steer
+ *                           while the vehicle moves, and trailers: articulated.h.
  *          skid steering    on ideal ground fixed wheels on more than one axle line cannot yaw: give the ground its
  *                           friction, or one axle line in the middle with the others as supports. */
 #ifndef LACONIC_H
@@ -61,6 +61,7 @@
 
 #include "laconic/friction.h" /* laconic_friction, laconic_slip */
 #include "laconic/internals.h"
+#include "laconic/methods.h" /* LACONIC_METHODS, LACONIC_METHOD_COUNT */
 #include "laconic/real.h"
 #include "laconic/sensors.h" /* laconic_sensors: IMU and encoders */
 #include "laconic/status.h"  /* laconic_status, laconic_arithmetic */
@@ -178,8 +179,10 @@ typedef struct laconic_model {
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal axes
  * of A (4.6), damping rates. About 2,000 flops plus 60 for each wheel; steps then need no sine of a given angle and no
- * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES, STRAIGHT_ONLY (fixed
- * wheels on parallel axle lines, as of skid steering, hold the heading where nothing slips), ILL_CONDITIONED (value:
+ * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES (item: the wheel that takes
+ * the last motion; value: what part of its way it would slide in that motion, 0 to 1), STRAIGHT_ONLY (fixed wheels on
+ * parallel axle lines, as of skid steering, hold the heading where nothing slips; item: the wheel whose line lies
+ * farthest off the first one's; value: by how much, in m), ILL_CONDITIONED (value:
  * the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where a constant or the
  * inverse of a scale is beyond 10¹⁵⁴ (single: 10¹⁹), so that the product of two would leave the range: every number of
  * a prepared model is finite. Where the vehicle has friction (laconic_vehicle_has_friction) the model is that of the
@@ -290,20 +293,14 @@ typedef struct laconic_method {
                            const struct laconic_forcing_samples *samples);
 } laconic_method;
 
-/*                                            order  takes                  conserves, free motion  */
-extern const laconic_method laconic_rk4;                 /* 4  h·r ≤ 2.785, h·|ν3| limited  –       */
-extern const laconic_method laconic_exponential_kahan;   /* 2  any damping                  nearly  */
-extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping                  nearly  */
-extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
-extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
-extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
-extern const laconic_method laconic_exponential_gauss_8; /* 8  any damping, h·|ν3| limited  nearly  */
-extern const laconic_method laconic_auto;                /* 8  everything: the rule stands in auto.c */
+#define LACONIC_METHOD_DECLARATION(number, identifier, name, order, TAKES, KEEPS, NEEDS, title) \
+    LACONIC_METHOD_WITH_##NEEDS(extern const laconic_method laconic_##identifier;)
 
-/* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan, 3 exponential-kahan-4, 4
- * exact-flow, 5 exact-flow-4, 6 taylor-8, 7 exponential-gauss-8) or by name. NULL if there is none. Links every
+/* laconic_rk4 and the others of methods.h. laconic_auto chooses for each step: auto.c has the rule. */
+LACONIC_METHODS(LACONIC_METHOD_DECLARATION)
+
+/* All methods, for adapters that choose by the number or the name in methods.h. NULL if there is none. Links every
  * method. */
-#define LACONIC_METHOD_COUNT (7 + LACONIC_WITH_EXPONENTIAL_GAUSS)
 const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
@@ -327,8 +324,8 @@ uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integ
 
 /* One step with the input sampled at its start, middle and end. Over the step torques and body
  * wrench are the parabola through the three; b of a force fixed in the world, which rotates against the body, varies
- * linearly between its values at the samples (in second-order methods at start and end). rk4 takes each stage's sample;
- * those of eighth order take a world force, too, along the parabola. Refuses as laconic_step does. */
+ * linearly between its values at the samples (in second-order methods at start and end). An explicit method of fourth
+ * order takes each stage's sample; those of eighth order take a world force, too, along the parabola. Refuses as laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
@@ -634,4 +631,7 @@ void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, 
 #ifdef __cplusplus
 }
 #endif
+
+#include "laconic/build.h" /* a program with other definitions than the library's does not link */
+
 #endif

@@ -2,7 +2,7 @@
  *
  * Everything that differs between builds of the core is decided here and nowhere else:
  *   LACONIC_SINGLE         float instead of double
- *   LACONIC_LANES          core_c/batch alone, which has its own numbers and words: for many vehicles at once
+ *   LACONIC_LANES          core_c/optional/batch alone, which has its own numbers and words: for many vehicles at once
  *   LACONIC_SCENE_HEADER   a generated header that fixes the constants below for one scene
  * Plain `if` tests the constants, so compilers check also the code that they then drop. */
 #ifndef LACONIC_REAL_H
@@ -56,6 +56,13 @@ typedef int64_t laconic_turns;
 #error "laconic: LACONIC_MAX_SUPPORTS must be from 1 to 16"
 #endif
 
+#ifndef LACONIC_MAX_BODIES /* bodies on hinges besides the carriage (articulated.h); 0 leaves them all out */
+#define LACONIC_MAX_BODIES 8
+#endif
+#if LACONIC_MAX_BODIES < 0 || LACONIC_MAX_BODIES > 10
+#error "laconic: LACONIC_MAX_BODIES must be from 0 to 10"
+#endif
+
 /* How many wheels a loop runs over: a field of the model, or the scene's own number. */
 #ifndef LACONIC_WHEELS
 #define LACONIC_WHEELS(model) ((model)->wheel_count)
@@ -92,7 +99,7 @@ typedef int64_t laconic_turns;
 #ifndef LACONIC_WITH_FRICTION /* 0: ideal ground and motors without limits alone */
 #define LACONIC_WITH_FRICTION 1
 #endif
-#ifndef LACONIC_WITH_EXPONENTIAL_GAUSS /* 0: integrators have no room for the weights of exponential-gauss-8 */
+#ifndef LACONIC_WITH_EXPONENTIAL_GAUSS /* 0: integrators have no room for weights, and no method that needs them */
 #define LACONIC_WITH_EXPONENTIAL_GAUSS 1
 #endif
 #ifndef LACONIC_WITH_PREPARE /* 0: model and integrator are constants made by the host */

@@ -5,18 +5,11 @@
 
 #include "laconic/real.h"
 
-#if LACONIC_WITH_EXPONENTIAL_GAUSS
-#define LACONIC_FIRST_METHODS "auto, rk4"
-#define LACONIC_LAST_METHODS ", taylor-8 or exponential-gauss-8"
-#else
-#define LACONIC_FIRST_METHODS "rk4"
-#define LACONIC_LAST_METHODS " or taylor-8"
-#endif
-
 /* clang-format off */
 
-/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit). The numbers go
- * on the wire: a new one comes last, and into the value table of RESULT.status in laconic.dbc. */
+/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit, $ for the names of
+ * the methods). The numbers go on the wire: a new one comes last, and into the value table of RESULT.status in
+ * laconic.dbc. */
 #define LACONIC_STATUSES(X) \
     X(OK, "ok", \
       "ok") \
@@ -38,16 +31,16 @@
     X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
-      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or be " \
-      "one line, or with ground.friction_coefficient the wheels slip; else release a locked wheel") \
+      "fixed and locked wheels prevent every motion: in the one that those before it allow, this wheel would slide " \
+      "by # of its way; the axle lines of all fixed wheels must meet in one point or be one line, or with " \
+      "ground.friction_coefficient the wheels slip; else release a locked wheel") \
     X(ILL_CONDITIONED, "ill-conditioned", /* ε √cond(A) >= 0.01 */ \
       "masses and lengths are too far apart for " LACONIC_REAL_NAME " precision: the condition number # leaves fewer " \
       "than two correct digits; check the units") \
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
       "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
     X(METHOD_UNKNOWN, "method unknown", \
-      "there is no such method; use " LACONIC_FIRST_METHODS ", exponential-kahan, exponential-kahan-4, exact-flow, " \
-      "exact-flow-4" LACONIC_LAST_METHODS) \
+      "there is no such method; use $") \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
       "the interval is no whole number of steps of # s; use @ s") \
     X(STEP_BEYOND_DAMPING_LIMIT, "step beyond damping limit", /* explicit methods: h·r_max above their limit */ \
@@ -73,10 +66,49 @@
     X(STEP_UNSOLVED, "step unsolved", /* friction: the contact forces of a step were not found */ \
       "no contact forces found for a step of # s; try another step or more roller_drag") \
     X(STRAIGHT_ONLY, "straight only", /* fixed wheels on parallel axle lines, on ideal ground */ \
-      "fixed wheels on parallel axle lines only drive straight, whatever their motors do; for skid steering give " \
-      "ground.friction_coefficient, so that wheels slip; else place them on one axle line") \
+      "fixed wheels on parallel axle lines only drive straight, whatever their motors do, and the line of this one " \
+      "lies # m off the first one's; for skid steering give ground.friction_coefficient, so that wheels slip; else " \
+      "place them on one axle line") \
     X(ZERO, "zero", \
-      "# is zero; give a value above 0, or below 0 for a shaft that turns the other way")
+      "# is zero; give a value above 0, or below 0 for a shaft that turns the other way") \
+    X(TOO_MANY_BODIES, "too many bodies", /* below 0, too */ \
+      "# bodies on hinges, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_BODIES") \
+    X(BODY_UNKNOWN, "body unknown", /* a wheel's body, or a parent that does not come before its body */ \
+      "# is not the number of a body that can be used here; give 0 (the carriage) to @, parents before their bodies") \
+    X(HINGE_NOT_SET, "hinge not set", \
+      "this hinge was never set; give its kind, or lower body_count") \
+    X(HINGE_KIND_UNKNOWN, "hinge kind unknown", \
+      "# is not a kind of hinge; use 1 (free), 2 (motor), 3 (prescribed) or 4 (coordinated)") \
+    X(COORDINATED_ON_BODY, "coordinated on body", \
+      "only hinges on the carriage are coordinated by the twist, but this one is on body #; use a prescribed hinge") \
+    X(COORDINATED_WHEEL, "coordinated wheel", \
+      "a fixed wheel on a coordinated hinge must roll along its body's first axis, with the hinge on its axle line; " \
+      "give axle_rad = pi/2 or -pi/2 and x_m = 0") \
+    X(COORDINATED_TOO_FEW, "coordinated too few", \
+      "# axle lines hold the carriage to the twist, but @ are needed: those of its own fixed wheels and of coordinated " \
+      "ones; use a prescribed or motor hinge") \
+    X(MASSLESS_HINGE, "massless hinge", /* an own hinge without inertia; limit: none */ \
+      "this hinge turns without inertia, and no wheel behind it sets its rate; give the body a yaw inertia, place the " \
+      "wheel behind the hinge (a trail), or prescribe the rate") \
+    X(STEERED_TOO_OFTEN, "steered too often", \
+      "# axle lines that turn freely or stand still hold the carriage at nearly every angle; use coordinated hinges, or " \
+      "give ground.friction_coefficient, so that wheels slip") \
+    X(FRICTION_WITH_HINGES, "friction with hinges", \
+      "# does not act on vehicles with hinges; take it out for a ground that holds every wheel") \
+    X(TWIST_ZERO, "twist zero", /* value: |T| or |w| */ \
+      "the twist gives this steered wheel no direction (its size there is #); keep the turning centre away from the " \
+      "hinge, and scale the voltages, not the twist, to stop") \
+    X(TWIST_JUMPS, "twist jumps", \
+      "the twist turns this steered wheel by # rad within a step, at most @ rad are possible; change the twist slowly, " \
+      "and reverse by voltages") \
+    X(TWIST_AGAINST_WHEELS, "twist against wheels", \
+      "the twist makes fixed wheels of the carriage slide (by # of its size); give one whose turning centre is on their " \
+      "axle line") \
+    X(WHEELS_DISAGREE, "wheels disagree", /* value: number of another wheel */ \
+      "this wheel and wheel # ask for different turning centres, so that nothing moves; use coordinated hinges, or give " \
+      "ground.friction_coefficient, so that wheels slip") \
+    X(STEP_BEYOND_TRAIL_LIMIT, "step beyond trail limit", /* explicit methods: h·v/a above their limit */ \
+      "# s is unstable with this method because a caster follows too fast (speed over trail); use at most @ s, or auto")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \
@@ -97,7 +129,7 @@
     X(FLUSHED, /* FTZ, DAZ, FPSCR.FZ, or a library linked with -ffast-math, which sets them for the whole process */ \
       "subnormal numbers are flushed to zero; clear the flush-to-zero and denormals-are-zero modes") \
     X(SUBTRACTED_WRONGLY, /* libgcc on Arm processors without double precision */ \
-      "the compiler's library rounds some differences wrongly; link soft_double.c (core_c/soft_double)")
+      "the compiler's library rounds some differences wrongly; link soft_double.c (core_c/optional/soft_double)")
 
 /* clang-format on */
 

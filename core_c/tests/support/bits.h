@@ -39,11 +39,15 @@ static inline void expect(uint64_t bits) {
     TEST_ASSERT_TRUE_MESSAGE(hash == bits, found);
 }
 
-/* One hash for each method: those of exponential-gauss-8 and auto can be renewed alone. */
-static inline void expect_by_method(void (*part)(const laconic_method *), const uint64_t bits[]) {
-    char found[60 * LACONIC_METHOD_COUNT] = "these bits are new:";
+/* Methods from number 0 on whose bits these tests hold. Of a later one trajectory_hash.c prints a line, which must be the
+ * same from every build. */
+#define METHODS_WITH_BITS 8
+
+/* One hash for each method: those of a method that was changed on purpose can be renewed alone. */
+static inline void expect_by_method(void (*part)(const laconic_method *), const uint64_t bits[METHODS_WITH_BITS]) {
+    char found[60 * METHODS_WITH_BITS] = "these bits are new:";
     bool same = true;
-    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++) {
+    for (int32_t number = 0; number < METHODS_WITH_BITS; number++) {
         const laconic_method *method = laconic_method_by_number(number);
         begin();
         part(method);

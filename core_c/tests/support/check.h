@@ -59,14 +59,14 @@ static inline void assert_tells_what_was_wrong(const laconic_refusal *why) {
     case LACONIC_FRICTION_TWICE:
     case LACONIC_FRICTION_MISSING: fits = value > 0; break;
     case LACONIC_ILL_CONDITIONED: fits = value > 1; break;
-    case LACONIC_NOTHING_MOVES: fits = value >= 3; break; /* constraints */
+    case LACONIC_NOTHING_MOVES: fits = value >= 0 && value <= 1.0001; break; /* a part of a way */
     case LACONIC_ROLLER_ALONG_AXLE:
     case LACONIC_WHEEL_KIND_UNKNOWN:
     case LACONIC_MOTOR_CIRCUIT_UNKNOWN: fits = isfinite(value); break;
     case LACONIC_WHEEL_NOT_SET:
     case LACONIC_METHOD_UNKNOWN:
-    case LACONIC_METHOD_WITHOUT_FRICTION:
-    case LACONIC_STRAIGHT_ONLY: fits = value == 0; break;
+    case LACONIC_METHOD_WITHOUT_FRICTION: fits = value == 0; break;
+    case LACONIC_STRAIGHT_ONLY: fits = value >= 0; break; /* a distance */
     case LACONIC_ABOVE_LIMIT: fits = has_limit = value > limit && limit >= 0; break;
     case LACONIC_TOO_MANY_WHEELS:
     case LACONIC_TOO_MANY_SUPPORTS: fits = has_limit = (value < 0 || value > limit) && limit > 0; break;

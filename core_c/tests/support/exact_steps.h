@@ -1,4 +1,4 @@
-/* Steps of made-up vehicles by every method in 50 digits, of host_tests/laconic/verification/derivatives, which has no
+/* Steps of made-up vehicles by every method in 50 digits, of host_tests/references/derivatives, which has no
  * code of the core's. Made by c_table.py there, whose head has the command. */
 #ifndef LACONIC_TEST_EXACT_STEPS_H
 #define LACONIC_TEST_EXACT_STEPS_H

@@ -16,7 +16,7 @@ static canopen_node node_at(laconic_drives *drives, int i, uint32_t now_us) {
 /* --- resets ------------------------------------------------------------------------------------------------------ */
 
 #define NOTHING(...)
-#define RESET(index, sub, last, type, access, member, initial, name) \
+#define RESET_MEMBER(index, sub, last, type, access, member, initial, name) \
     if ((initial) != 0) axis->member = initial;
 
 /* The communication's objects as after power-up; boot-up, then pre-operational. */
@@ -25,7 +25,7 @@ static void reset_communication(const canopen_node *on) {
     axis->consumer = axis->producer_ms = axis->behaviour = 0;
     axis->sdo_step = 0;
     axis->trouble = 0;
-    CANOPEN_DEVICE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
+    CANOPEN_DEVICE_OBJECTS(NOTHING, RESET_MEMBER, NOTHING, NOTHING)
     if (axis->state < CANOPEN_FAULT_REACTION) axis->error_register = 0;
     axis->sync_id = 0x80;
     axis->emergency_id = (uint16_t)(0x80 + canopen_id(on));
@@ -48,7 +48,7 @@ static void reset_node(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     const laconic_real rated_A = axis->rated_A;
     memset(axis, 0, sizeof *axis);
-    CANOPEN_DRIVE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
+    CANOPEN_DRIVE_OBJECTS(NOTHING, RESET_MEMBER, NOTHING, NOTHING)
     axis->rated_A = rated_A;
     axis->ending = CANOPEN_NO_ENDING;
     fit_windows(axis, (uint32_t)on->drive->settings.encoder_counts);

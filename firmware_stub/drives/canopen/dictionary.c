@@ -152,7 +152,7 @@ static uint32_t check_limits(const canopen_row *row, uint8_t sub, uint32_t value
 }
 
 /* Values between the limits that are refused all the same. */
-static uint32_t check(uint16_t at, uint32_t value) {
+static uint32_t checked_number(uint16_t at, uint32_t value) {
     bool wrong = false;
     switch (at) {
     case AT(consumer): wrong = value >> 16 > 127; break;
@@ -165,7 +165,7 @@ static uint32_t check(uint16_t at, uint32_t value) {
 
 static uint32_t write_axis(const canopen_node *on, const canopen_row *row, uint8_t sub, uint32_t value) {
     uint32_t abort = check_limits(row, sub, value);
-    if (abort == 0) abort = check(row->from, value);
+    if (abort == 0) abort = checked_number(row->from, value);
     if (abort != 0) return abort;
     const uint16_t before = on->axis->controlword;
     const uint16_t two = (uint16_t)value;

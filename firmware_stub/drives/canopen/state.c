@@ -2,7 +2,7 @@
  * codes whether the drive slows down first. While it does, it stays in the state that it leaves. */
 #include "canopen.h"
 
-typedef enum command { DISABLE_VOLTAGE, QUICK_STOP, SHUT_DOWN, SWITCH_ON, ENABLE, COMMANDS } command;
+typedef enum command { DISABLE_VOLTAGE, QUICK_STOP, SHUT_DOWN, SWITCH_ON, ENABLE_OPERATION, COMMANDS } command;
 
 /* STAY: the command is passed over, but it ends a ramp to another state. */
 enum { STAY = 0xFF };
@@ -19,7 +19,7 @@ static command command_of(uint16_t word) {
     if ((word & 2U) == 0) return DISABLE_VOLTAGE;
     if ((word & 4U) == 0) return QUICK_STOP;
     if ((word & 1U) == 0) return SHUT_DOWN;
-    return (word & 8U) == 0 ? SWITCH_ON : ENABLE;
+    return (word & 8U) == 0 ? SWITCH_ON : ENABLE_OPERATION;
 }
 
 /* Faults that CANopen finds are faults of the drive, too, for whoever watches drives of all protocols. */

@@ -215,7 +215,7 @@ uint32_t moteus_write(laconic_drives *drives, int32_t i, uint32_t number, uint32
 }
 
 /* Words of 32 bits, which are read as int32 alone. */
-static bool word(int32_t i, uint32_t number, uint32_t *value) {
+static bool register_word(int32_t i, uint32_t number, uint32_t *value) {
     *value = 0;
     if (number == REGISTER_MAP) *value = 5;
     if (number == SERIAL_NUMBER) *value = (uint32_t)i + 1;
@@ -242,7 +242,7 @@ uint32_t moteus_read(laconic_drives *drives, int32_t i, uint32_t number, uint32_
         put_milliseconds(axis->milliseconds, type, to);
     } else if (number == UUID_MASK_CAPABLE) {
         encode(1, INTEGER, type, to);
-    } else if (type == MOTEUS_INT32 && word(i, number, &value)) {
+    } else if (type == MOTEUS_INT32 && register_word(i, number, &value)) {
         octets_put_u32(to, value);
     } else {
         return MOTEUS_UNKNOWN_REGISTER;

@@ -24,4 +24,10 @@ typedef struct laconic_frame {
     uint8_t data[LACONIC_FRAME_BYTES];
 } laconic_frame;
 
+/* True iff the frame has a length that its kind allows and this build has room for. Code that reads or writes the bytes
+ * of a frame from outside asks first. */
+static inline bool laconic_frame_fits(const laconic_frame *frame) {
+    return frame->length <= (LACONIC_NODE_CAN_FD && frame->fd ? LACONIC_FRAME_BYTES : 8);
+}
+
 #endif

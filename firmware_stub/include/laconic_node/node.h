@@ -76,6 +76,7 @@ typedef struct laconic_node {
     uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
     uint8_t send;  /* chosen frames: LACONIC_NODE_SEND_…                       */
     bool raw_fd;
+    bool model_is_wrong; /* integrity.c has found it: no order but COMMIT uses it    */
     uint8_t wheel_group; /* next WHEEL_SPEED group                                   */
 #if LACONIC_NODE_WITH_SENSORS
     uint8_t angle_group;   /* next WHEEL_ANGLE group                                  */
@@ -126,7 +127,9 @@ typedef struct laconic_node {
 #define LACONIC_NODE_SEND_ENCODER 128U
 #define LACONIC_NODE_ESTIMATE_PAGES 8U
 
-/* False iff the ID base is no multiple of 32 or beyond 0x7E0; the node is then not usable. */
+/* False iff the ID base is not a multiple of 32 or is above 0x7E0, there is no `method`, or `can_fd` is set in a build
+ * without CAN FD (LACONIC_NODE_CAN_FD 0), whose frames have room for 8 bytes. The node is then not usable: a port must
+ * stop. */
 bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us);
 
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us);
@@ -140,5 +143,7 @@ bool laconic_node_is_busy(const laconic_node *node);
 
 /* Microseconds until on_tick has something to do, at most the time to the next heartbeat; 0: now. */
 uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us);
+
+#include "laconic_node/build.h" /* a port with other definitions than the node's does not link */
 
 #endif

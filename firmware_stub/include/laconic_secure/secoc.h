@@ -28,18 +28,20 @@ typedef enum laconic_secoc_status {
     LACONIC_SECOC_WRONG_CODE, /* another key, a changed payload, or more than 255 messages missing */
     LACONIC_SECOC_REPLAYED,   /* right, with the freshness of the last accepted message             */
     LACONIC_SECOC_OLD,        /* right, with the freshness of one of the 255 before it              */
+    LACONIC_SECOC_SPENT,      /* right, beyond the last freshness of a nonce (gate.h)               */
     LACONIC_SECOC_STATUSES
 } laconic_secoc_status;
 
 /* "accepted", "wrong key or changed message" … */
 const char *laconic_secoc_text(laconic_secoc_status status);
 
-/* One byte of freshness and `code_bytes` (at most 16) of the code. `length`: of the payload, at most
- * LACONIC_SECOC_LONGEST. */
-void laconic_secoc_seal(const laconic_cmac_key *key, uint16_t number, uint64_t freshness, const uint8_t *payload,
+/* Writes one byte of freshness and `code_bytes` (at most 16) of the code. Returns false, and writes nothing, iff there are
+ * to be more, or the payload's `length` is above LACONIC_SECOC_LONGEST. */
+bool laconic_secoc_seal(const laconic_cmac_key *key, uint16_t number, uint64_t freshness, const uint8_t *payload,
                         size_t length, uint8_t *trailer, size_t code_bytes);
 
-/* OK iff the trailer belongs to the payload and is fresh; then, and only then, *last becomes its freshness. */
+/* OK iff the trailer belongs to the payload and is fresh; then, and only then, *last becomes its freshness. No trailer
+ * belongs to what laconic_secoc_seal() refuses. */
 laconic_secoc_status laconic_secoc_open(const laconic_cmac_key *key, uint16_t number, uint64_t *last,
                                         const uint8_t *payload, size_t length, const uint8_t *trailer,
                                         size_t code_bytes);

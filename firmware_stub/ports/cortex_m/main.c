@@ -116,7 +116,7 @@ static void begin(void) {
                                   .nonce_seed = board_nonce_seed()};
     port_add_protocols(&config);
     laconic_slcan_init(&slcan, 0);
-    laconic_node_init(&node, &config, board_now_us());
+    if (!laconic_node_init(&node, &config, board_now_us())) board_end(1);
     port_watch(&node);
 }
 

@@ -444,9 +444,10 @@ int main(int count, char **words) {
     int bad = parse(count, words, &settings);
     if (bad == 0) bad = guard(&port, &settings);
     if (bad != 0) return bad;
-    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed(),
-                                        laconic_drive_protocol_by_number};
-    laconic_node_init(&port.node, &config, now_us());
+    const laconic_node_config config = {(uint16_t)settings.id_base, LACONIC_NODE_CAN_FD != 0, laconic_method_by_number,
+                                        nonce_seed(), laconic_drive_protocol_by_number};
+    if (!laconic_node_init(&port.node, &config, now_us()))
+        return complain("--id-base", "give a multiple of 32 from 0 to 0x7E0");
     laconic_integrity_begin(&port.integrity, &port.node, &config, &any_finite_number, LACONIC_INTEGRITY_ALL);
     if (settings.interface != NULL) return serve_interface(&port, settings.interface);
     signal(SIGPIPE, SIG_IGN); /* a client that has gone is noticed by reading from it */

@@ -17,6 +17,7 @@ enum { FRAMES_AT_ONCE = 64 }; /* then the node is stepped, so that a full bus do
 
 size_t socketcan_put(struct canfd_frame *to, const laconic_frame *frame) {
     memset(to, 0, sizeof *to);
+    if (!laconic_frame_fits(frame)) return 0;
     to->can_id = frame->id | (frame->extended ? CAN_EFF_FLAG : 0U) | (frame->remote ? CAN_RTR_FLAG : 0U);
     to->len = frame->length;
     if (!frame->remote) memcpy(to->data, frame->data, frame->length);
@@ -28,7 +29,7 @@ size_t socketcan_put(struct canfd_frame *to, const laconic_frame *frame) {
 bool socketcan_take(laconic_frame *frame, const struct canfd_frame *from, size_t size) {
     const bool fd = size == CANFD_MTU;
     if ((!fd && size != CAN_MTU) || from->can_id & CAN_ERR_FLAG) return false;
-    if (from->len > (fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN)) return false;
+    if (from->len > (fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN) || (fd && !LACONIC_NODE_CAN_FD)) return false;
     memset(frame, 0, sizeof *frame);
     frame->extended = (from->can_id & CAN_EFF_FLAG) != 0;
     frame->remote = !fd && (from->can_id & CAN_RTR_FLAG) != 0;
@@ -79,6 +80,7 @@ static bool transmit(socketcan_port *port) {
             if (!fetch(port, &frame)) return true;
             if (port->gate != NULL) laconic_gate_sent(port->gate, &frame);
             port->unsent_size = socketcan_put(&port->unsent, &frame);
+            if (port->unsent_size == 0) continue;
         }
         port->waits = send(port->socket, &port->unsent, port->unsent_size, MSG_DONTWAIT | MSG_NOSIGNAL) < 0;
         if (port->waits) return is_passing(errno);
@@ -112,7 +114,7 @@ void socketcan_serve(socketcan_port *port, uint32_t (*now_us)(void)) {
 /* --------------------------------------------------------------------------------- opening -- */
 
 static bool bind_to(int number, const char *interface) {
-    const int on = 1;
+    const int takes_fd = LACONIC_NODE_CAN_FD != 0;
     struct ifreq request = {.ifr_ifindex = 0};
     struct sockaddr_can address = {.can_family = AF_CAN};
     if (strlen(interface) >= sizeof request.ifr_name) {
@@ -122,7 +124,7 @@ static bool bind_to(int number, const char *interface) {
     memcpy(request.ifr_name, interface, strlen(interface));
     if (ioctl(number, SIOCGIFINDEX, &request) != 0) return false;
     address.can_ifindex = request.ifr_ifindex;
-    return setsockopt(number, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) == 0 &&
+    return setsockopt(number, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &takes_fd, sizeof takes_fd) == 0 &&
            bind(number, (struct sockaddr *)&address, sizeof address) == 0;
 }
 

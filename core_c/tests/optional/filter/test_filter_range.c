@@ -1,0 +1,210 @@
+/* Tests of filter_readings.c at the ends of the range: corrections up to them are made, others change nothing. */
+#include "factors.h"
+#include "vehicles.h"
+
+#define CERTAIN REAL(1e-10) /* an error whose square is 0 beside 1 */
+
+typedef struct reader {
+    laconic_model model;
+    laconic_filter filter;
+} reader;
+
+/* A gyro that shows component `seen` of the velocity alone, of which the variance is 1 as that of all errors. */
+static reader reader_with(int seen, laconic_real encoder_std_rad) {
+    laconic_filter_settings settings;
+    reader r;
+    memset(&settings, 0, sizeof settings);
+    settings.yaw_rate_std_rad_per_s = CERTAIN;
+    settings.encoder_std_rad[0] = encoder_std_rad;
+    settings.bias_std_rad_per_s = REAL(1);
+    r.model = model_of(mecanum());
+    for (int k = 0; k < 3; k++) r.model.yaw_rate_of_zeta[k] = REAL(k == seen);
+    const laconic_state state = moving(&r.model, 0, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&r.filter, &r.model, &settings, &state));
+    memset(&r.filter.covariance, 0, sizeof r.filter.covariance);
+    for (int32_t i = 0; i < r.filter.errors; i++) r.filter.covariance.upper[i][i] = r.filter.covariance.diagonal[i] = 1;
+    r.filter.covariance.diagonal[row_of_bias(&r.filter)] = 0;
+    return r;
+}
+
+static reader reader_of(int seen) { return reader_with(seen, REAL(1)); }
+
+static void assert_shown(laconic_status expected, reader *r, laconic_real yaw_rate_rad_per_s) {
+    const laconic_filter before = r->filter;
+    ASSERT_STATUS(expected, laconic_filter_yaw_rate(&r->filter, &r->model, yaw_rate_rad_per_s, NULL));
+    if (expected != LACONIC_OK) TEST_ASSERT_EQUAL_MEMORY(&before, &r->filter, sizeof before);
+}
+
+static void a_velocity_is_corrected_up_to_the_largest_in_any_direction(void) {
+    for (int k = 0; k < 3; k++) {
+        reader r = reader_of(k);
+        assert_shown(LACONIC_OVERFLOW, &r, LARGEST_SPEED * REAL(1.5));
+        r.filter.state.zeta[k].value = LARGEST_SPEED;
+        assert_shown(LACONIC_OK, &r, LARGEST_SPEED);
+        TEST_ASSERT_TRUE(r.filter.state.zeta[k].value == LARGEST_SPEED);
+    }
+}
+
+/* The estimate is below the largest speed, and so is what it lacks: their sum is not. */
+static void a_correction_is_judged_by_where_it_leads(void) {
+    for (int k = 0; k < 3; k++) {
+        reader r = reader_of(k);
+        r.filter.state.zeta[k].value = LARGEST_SPEED * REAL(0.75);
+        assert_shown(LACONIC_OVERFLOW, &r, LARGEST_SPEED * REAL(1.25));
+        assert_shown(LACONIC_OK, &r, LARGEST_SPEED * REAL(-0.5));
+    }
+}
+
+/* The heading's error is that of the velocity times `by`. */
+static reader with_heading_by(laconic_real by) {
+    reader r = reader_of(2);
+    r.filter.covariance.upper[row_of_heading(&r.filter)][r.filter.errors - 1] = by;
+    return r;
+}
+
+/* The same without encoders, so that the filter keeps no errors of travels. */
+static void without_encoders_a_velocity_is_corrected_up_to_the_largest_too(void) {
+    for (int k = 0; k < 3; k++) {
+        reader r = reader_with(k, 0);
+        TEST_ASSERT_EQUAL_INT(0, r.filter.travels);
+        assert_shown(LACONIC_OVERFLOW, &r, LARGEST_SPEED * REAL(1.5));
+        assert_shown(LACONIC_OK, &r, LARGEST_SPEED * REAL(0.75));
+    }
+}
+
+static void a_heading_is_corrected_by_less_than_can_be_counted(void) {
+    reader r = with_heading_by(LARGEST_YAW_CHANGE_RAD);
+    assert_shown(LACONIC_OVERFLOW, &r, 1);
+    r = with_heading_by(LARGEST_YAW_CHANGE_RAD * (1 - LACONIC_EPSILON));
+    assert_shown(LACONIC_OK, &r, 1);
+}
+
+static void an_infinite_correction_of_any_error_is_refused(void) {
+    for (int32_t i = 0; i < 9; i++) {
+        reader r = reader_of(2);
+        r.filter.covariance.upper[i][9] = LACONIC_REAL_MAX / 4; /* the tenth error is that of the velocity shown */
+        TEST_ASSERT_EQUAL_INT(10, r.filter.errors);
+        assert_shown(LACONIC_OVERFLOW, &r, 8);
+    }
+}
+
+/* A vehicle with as many wheels as there may be, each turned by its own angle; the arrays are no longer. */
+static void encoders_of_the_most_wheels_are_read(void) {
+    laconic_vehicle v = bare_body();
+    laconic_real turned[LACONIC_MAX_WHEELS], angle[LACONIC_MAX_WHEELS];
+    laconic_filter_settings settings;
+    laconic_filter filter;
+    laconic_innovation found;
+    memset(&settings, 0, sizeof settings);
+    settings.nu_std_rad_per_s[0] = settings.yaw_rate_std_rad_per_s = REAL(1);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1 * i, 0.1, PI / 4 * i, PI / 2);
+        settings.encoder_std_rad[i] = REAL(0.01);
+        turned[i] = REAL(0.001 * (i + 1));
+    }
+    const laconic_model m = model_of(v);
+    const laconic_state state = moving(&m, 0, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_encoders(&filter, &m, turned, &found));
+    TEST_ASSERT_EQUAL_INT(LACONIC_MAX_WHEELS, found.count);
+    laconic_wheel_angles(&m, &filter.state, angle);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) ASSERT_NEAR(ROUNDING, -0.001 * (i + 1), angle[i]);
+}
+
+/* An encoder of one count a turn is one; of what lies behind the wheels nothing is written. */
+static void counts_are_those_of_the_wheels_alone(void) {
+    const int32_t before[3] = {0, 0, 0}, now[3] = {3, 5, 7};
+    laconic_sensor_settings sensors;
+    laconic_real turned[3] = {REAL(9), REAL(9), REAL(9)};
+    memset(&sensors, 0, sizeof sensors);
+    for (int i = 0; i < 3; i++) sensors.encoder[i].counts_per_turn = 1;
+    laconic_filter_turned(turned, &sensors, before, now, 2);
+    ASSERT_NEAR(20 * ROUNDING, 6 * PI, turned[0]);
+    ASSERT_NEAR(40 * ROUNDING, 10 * PI, turned[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(9, (double)turned[2]);
+}
+
+static void a_fix_is_its_seven_numbers(void) {
+    reader r = reader_of(0);
+    struct {
+        laconic_real before;
+        laconic_pose_fix fix;
+        laconic_real behind;
+    } at;
+    memset(&at, 0, sizeof at);
+    at.fix.std_m = at.fix.heading_std_rad = REAL(1);
+    at.before = at.behind = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_fix(&r.filter, &r.model, &at.fix, NULL));
+    at.fix.place_y_m = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_filter_fix(&r.filter, &r.model, &at.fix, NULL));
+}
+
+/* The variances' sum is 3/4 of the largest number; then they are 1.69 times as large. */
+static void the_noise_of_forces_counts_once_up_to_the_end_of_the_range(void) {
+    const laconic_model m = model_of(mecanum());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    laconic_filter_settings settings;
+    laconic_filter filter;
+    laconic_real sum = 0;
+    memset(&settings, 0, sizeof settings);
+    settings.yaw_rate_std_rad_per_s = settings.force_noise_N_per_sqrt_Hz = 1;
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+    for (int k = 0; k < 3; k++) sum += filter.forcing_variance_s[k];
+    settings.force_noise_N_per_sqrt_Hz = REAL(sqrt((double)(REAL(0.75) * LACONIC_REAL_MAX) / (double)sum));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+    settings.force_noise_N_per_sqrt_Hz *= REAL(1.3);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &m, &settings, &state));
+}
+
+/* A fix that is so far off, along or across, that its square leaves the range, and what it corrects does not. */
+static void a_fix_whose_innovation_is_no_number_is_refused(void) {
+    for (int k = 0; k < 4; k++) {
+        const laconic_real far = REAL(EITHER(1e170, 1e25)) * REAL(k < 2 ? 1 : -1);
+        const laconic_pose_fix fix = {k % 2 == 0 ? far : 0, k % 2 == 1 ? far : 0, 0, 1, 0, 0, 0};
+        reader r = reader_of(0);
+        const laconic_filter before = r.filter;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+    }
+}
+
+/* A point a metre ahead is seen far aside: a heading of which nothing is known would turn there by so many radians. */
+static void a_yaw_beyond_what_can_be_counted_is_refused_in_either_direction(void) {
+    for (int sign = -1; sign < 2; sign += 2) {
+        reader r = reader_of(0);
+        laconic_pose_fix fix = {0, LARGEST_YAW_CHANGE_RAD * REAL(4 * sign), 0, 1, 0, 1, 0};
+        fix.place_x_m += r.model.com_x_m;
+        fix.place_y_m += r.model.com_y_m;
+        r.filter.covariance.diagonal[row_of_x(&r.filter)] = r.filter.covariance.diagonal[row_of_x(&r.filter) + 1] = 0;
+        const laconic_filter before = r.filter;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+    }
+}
+
+static void a_wheel_without_counts_has_not_turned(void) {
+    const int32_t before[2] = {0, 0}, now[2] = {5, 5};
+    laconic_real turned[2] = {7, 7};
+    laconic_sensor_settings sensors;
+    memset(&sensors, 0, sizeof sensors);
+    sensors.encoder[1].counts_per_turn = -100;
+    laconic_filter_turned(turned, &sensors, before, now, 2);
+    TEST_ASSERT_TRUE(turned[0] == 0 && turned[1] == 0);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_velocity_is_corrected_up_to_the_largest_in_any_direction);
+    RUN_TEST(a_correction_is_judged_by_where_it_leads);
+    RUN_TEST(without_encoders_a_velocity_is_corrected_up_to_the_largest_too);
+    RUN_TEST(a_heading_is_corrected_by_less_than_can_be_counted);
+    RUN_TEST(an_infinite_correction_of_any_error_is_refused);
+    RUN_TEST(encoders_of_the_most_wheels_are_read);
+    RUN_TEST(counts_are_those_of_the_wheels_alone);
+    RUN_TEST(a_fix_is_its_seven_numbers);
+    RUN_TEST(the_noise_of_forces_counts_once_up_to_the_end_of_the_range);
+    RUN_TEST(a_fix_whose_innovation_is_no_number_is_refused);
+    RUN_TEST(a_yaw_beyond_what_can_be_counted_is_refused_in_either_direction);
+    RUN_TEST(a_wheel_without_counts_has_not_turned);
+    return UNITY_END();
+}

@@ -1,0 +1,139 @@
+/* Raw frames: bytes of RAW_INPUT become numbers of the input, and outputs of the plant become bytes of RAW_OUTPUT. */
+#include "laconic_node/raw_frames.h"
+
+#include <string.h>
+
+/* Numbers on the bus are little-endian; a big-endian target would have to reverse their bytes here. */
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "laconic: raw frames are written for little-endian targets"
+#endif
+
+void laconic_raw_restart(laconic_raw_input *raw) {
+    raw->filled = 0;
+    raw->position = 0;
+    raw->segment = 0;
+    raw->frames = 0;
+    raw->complete = false;
+    raw->broken = false;
+}
+
+/* Address of number k of one input; NULL beyond the last. */
+static laconic_real *slot_in(laconic_input *input, uint8_t take, int32_t wheel_count, int32_t k) {
+    if (take & LACONIC_RAW_VOLTAGE) {
+        if (k < wheel_count) return &input->voltage_V[k];
+        k -= wheel_count;
+    }
+    if (take & LACONIC_RAW_AXLE_TORQUE) {
+        if (k < wheel_count) return &input->axle_torque_Nm[k];
+        k -= wheel_count;
+    }
+    if (take & LACONIC_RAW_BODY_WRENCH) {
+        if (k < 3) return k < 2 ? &input->body_force_N[k] : &input->body_moment_Nm;
+        k -= 3;
+    }
+    /* cannot be reached: numbers beyond the last are refused before */
+    if (take & LACONIC_RAW_WORLD_FORCE && k < 4)
+        return k < 2 ? &input->world_force_N[k] : &input->world_force_point_m[k - 2];
+    /* cannot be reached: numbers beyond the last are refused before */
+    return NULL;
+}
+
+static int32_t numbers_of(uint8_t take, int32_t wheel_count) {
+    int32_t count = 0;
+    if (take & LACONIC_RAW_VOLTAGE) count += wheel_count;
+    if (take & LACONIC_RAW_AXLE_TORQUE) count += wheel_count;
+    if (take & LACONIC_RAW_BODY_WRENCH) count += 3;
+    if (take & LACONIC_RAW_WORLD_FORCE) count += 4;
+    return count;
+}
+
+static void store(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count) {
+    const int32_t each = numbers_of(raw->take, wheel_count);
+    const int32_t total = raw->take & LACONIC_RAW_SAMPLED ? 3 * each : each;
+    const int32_t sample = raw->position / each;
+    laconic_real *to = slot_in(&input[sample], raw->take, wheel_count, raw->position % each);
+    memcpy(to, raw->number, sizeof raw->number);
+    raw->position++;
+    raw->filled = 0;
+    raw->complete = raw->position == total;
+}
+
+bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
+                      uint8_t segment_mask, const uint8_t *bytes, uint8_t count) {
+    if (raw->broken && segment == 0) laconic_raw_restart(raw);
+    const bool expected = !raw->broken && !raw->complete && segment == raw->segment;
+    if (!expected || numbers_of(raw->take, wheel_count) == 0) {
+        raw->broken = true;
+        return false;
+    }
+    raw->segment = (uint8_t)((segment + 1U) & segment_mask);
+    raw->frames++;
+    for (uint8_t k = 0; k < count && !raw->complete; k++) {
+        raw->number[raw->filled++] = bytes[k];
+        if (raw->filled == sizeof raw->number) store(raw, input, wheel_count);
+    }
+    return true;
+}
+
+bool laconic_raw_is_whole(const laconic_raw_input *raw, uint16_t frames) {
+    return !raw->broken && raw->frames == frames && (raw->complete || (raw->position == 0 && raw->filled == 0));
+}
+
+static laconic_real *collect_pose(laconic_real *to, const laconic_plant *plant) {
+    laconic_pose pose;
+    laconic_pose_of(&pose, &plant->model, &plant->state);
+    *to++ = pose.x_m;
+    *to++ = pose.y_m;
+    *to++ = pose.heading_rad;
+    return to;
+}
+
+static laconic_real *collect_sensors(laconic_real *to, uint8_t send, int32_t wheel_count,
+                                     const laconic_sensor_outputs *sensed) {
+    if (send & LACONIC_RAW_IMU) {
+        for (int k = 0; k < 2; k++) *to++ = sensed->acceleration_body_m_per_s2[k];
+        for (int k = 0; k < 2; k++) *to++ = sensed->imu_acceleration_m_per_s2[k];
+        *to++ = sensed->imu_yaw_rate_rad_per_s;
+    }
+    for (int32_t i = 0; (send & LACONIC_RAW_ENCODER) && i < wheel_count; i++) *to++ = sensed->encoder_count[i];
+    return to;
+}
+
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_input *held,
+                         const laconic_sensor_outputs *sensed) {
+    laconic_real *to = raw->number;
+    const int32_t n = plant->model.wheel_count;
+    if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_NU) {
+        laconic_nu(&plant->model, &plant->state, to);
+        to += 3;
+    }
+    if (raw->send & LACONIC_RAW_POSE) to = collect_pose(to, plant);
+    if (raw->send & LACONIC_RAW_WHEEL_SPEED) {
+        laconic_plant_wheel_speeds(plant, to);
+        to += n;
+    }
+    if (raw->send & LACONIC_RAW_WHEEL_ANGLE) {
+        laconic_plant_wheel_angles(plant, to);
+        to += n;
+    }
+    if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
+    if (raw->send >= LACONIC_RAW_IMU) { /* one of the last three, which few choose */
+        if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
+        /* a condition cannot be reached: the first is a constant of the build */
+        if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
+            for (int32_t i = 0; i < n; i++) *to++ = held->axle_torque_Nm[i];
+    }
+    raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
+    raw->position = 0;
+    raw->segment = 0;
+}
+
+bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room) {
+    const uint16_t left = (uint16_t)(raw->size - raw->position);
+    const uint8_t count = left < room ? (uint8_t)left : room;
+    memcpy(bytes, (const uint8_t *)raw->number + raw->position, count);
+    memset(bytes + count, 0, (size_t)(room - count));
+    raw->position = (uint16_t)(raw->position + count);
+    raw->segment++;
+    return raw->position < raw->size;
+}

@@ -1,0 +1,1 @@
+"""How far the project is checked beyond its tests; run.py lists the parts."""

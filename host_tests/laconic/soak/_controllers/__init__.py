@@ -1,1 +1,0 @@
-"""Controllers that know nothing of us, unchanged, in front of a played vehicle on any board."""

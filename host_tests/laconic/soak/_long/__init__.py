@@ -1,1 +1,0 @@
-"""Motions whose end is known in closed form after any number of steps."""

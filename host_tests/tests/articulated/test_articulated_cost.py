@@ -1,0 +1,30 @@
+"""What a step of a vehicle with hinges costs, in steps of rk4 of a vehicle without them and with as many wheels."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+from laconic.benchmark.counting import cachegrind_present, instructions_of
+from laconic.paths import built
+
+LEAST, MOST = 500, 1000  # steps: what a count of one run has in common with another's cancels
+LIMITS = {"casters-1": (3, 5.3), "casters-2": (4, 7.5), "tricycle-motor": (3, 8.0), "tricycle-prescribed": (3, 8.2),
+          "ackermann": (4, 9.0), "swerve": (4, 12.5), "trailers-3": (6, 16.5)}
+
+
+@cache
+def step_cost(vehicle: str, method: str) -> float:
+    program = str(built("bin/count_articulated"))
+    least, most = (instructions_of([program, vehicle, method, str(steps)]) for steps in (LEAST, MOST))
+    return (most - least) / (MOST - LEAST)
+
+
+@pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
+@pytest.mark.parametrize("vehicle", LIMITS)
+def test_a_step_of_rk4_costs_at_most_so_many_plain_steps(capsys: pytest.CaptureFixture[str], vehicle: str) -> None:
+    wheels, limit = LIMITS[vehicle]
+    plain, step = step_cost(f"plain-{wheels}", "rk4"), step_cost(vehicle, "rk4")
+    with capsys.disabled():
+        print(f"\n{vehicle}: {step:.0f} instructions, {step / plain:.2f} plain steps of {plain:.0f}")
+    assert step / plain < limit

@@ -1,0 +1,158 @@
+"""Accelerations of articulated vehicles at random states against maximal coordinates with multipliers."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from articulated_runner import Case, input_words, run, start_words, vehicle_words
+from maximal_coordinates import Maximal, left_of, turned
+
+STATES = 150
+CASES = json.loads((Path(__file__).parents[1] / "data" / "articulated_reference.json").read_text())["cases"]
+VEHICLES = {case["name"]: case["vehicle"] for case in CASES if case["vehicle"]["bodies"][-1]["mass"] > 0}
+
+
+def body(parent: int, hinge: list[float], mass: float, inertia: float, com: list[float], kind: str) -> Case:
+    return {"parent": parent, "hinge": hinge, "mass": mass, "inertia": inertia, "com": com,
+            "joint": {"kind": kind, "damping": 0.3, "stiffness": 0.4, "rest": 0.1, "gain": 0.5}}
+
+
+def wheel(number: int, x: float, y: float, axle: float = -math.pi / 2) -> Case:
+    return {"body": number, "kind": "fixed", "at": [x, y], "axle": axle, "radius": 0.1, "inertia": 0.01, "gain": 0.3,
+            "damping": 0.2}
+
+
+def branching_tree() -> Case:
+    omni = VEHICLES["omni-trailer-free"]
+    bodies = [omni["bodies"][0], body(0, [-0.25, 0.03], 10, 0.4, [-0.3, 0.02], "free"),
+              body(1, [-0.5, 0.05], 4, 0.1, [-0.2, 0.03], "free"), body(1, [-0.2, 0.3], 3, 0.05, [0.1, 0.1], "motor"),
+              body(2, [-0.3, 0.0], 2, 0.02, [-0.1, 0.0], "prescribed")]
+    return {"bodies": bodies, "wheels": [*omni["wheels"][:4], wheel(3, 0.0, 0.02), wheel(2, -0.3, 0.1)]}
+
+
+def train() -> Case:
+    """A car, a trailer, a trailer with two axles that cannot yaw, and a caster on it."""
+    car = VEHICLES["ackermann-one-trailer-off-axle"]
+    bodies = [*car["bodies"], body(3, [-2.4, 0.1], 90, 40, [-0.9, 0.0], "free"),
+              body(4, [-1.5, 0.3], 3, 0.2, [-0.1, 0.0], "free")]
+    return {"bodies": bodies, "wheels": [*car["wheels"], wheel(4, -1.2, 0.4), wheel(5, -0.2, 0.0)]}
+
+
+VEHICLES |= {"branching tree": branching_tree(), "train": train()}
+
+
+def commanded_angles(vehicle: Case, twist: list[list[float]]) -> dict[int, tuple[float, float, float]]:
+    """ψ, ψ' and ψ'' of coordinated hinges at T + T't."""
+    found = {}
+    for number, hung in enumerate(vehicle["bodies"]):
+        if hung.get("joint", {}).get("kind") != "coordinated":
+            continue
+        lever = 1j * complex(*hung["hinge"])
+        w, rate = (complex(twist[0][k], twist[1][k]) + lever * twist[2][k] for k in (0, 1))
+        ratio = rate / w
+        found[number] = (math.atan2(w.imag, w.real), ratio.imag, (-ratio * ratio).imag)
+    return found
+
+
+def random_moment(vehicle: Case, rng: np.random.Generator) -> tuple[Case, Case]:
+    """A segment and a start."""
+    hinges, wheels = range(1, len(vehicle["bodies"])), len(vehicle["wheels"])
+    segment: Case = {"U": list(rng.normal(size=wheels) * 5), "axle_torque": list(rng.normal(size=wheels)),
+                     "body_wrench": list(rng.normal(size=3) * 5), "world_force": list(rng.normal(size=2)),
+                     "point": list(rng.normal(size=2) * 0.2), "hinge_U": {}, "hinge_torque": {}, "hinge_rate": {}}
+    for b in hinges:
+        kind = vehicle["bodies"][b]["joint"]["kind"]
+        if kind == "prescribed":
+            segment["hinge_rate"][str(b)] = list(rng.normal(size=2))
+        if kind in ("free", "motor"):
+            segment["hinge_torque"][str(b)], segment["hinge_U"][str(b)] = rng.normal(), rng.normal()
+    has_axle = any(w["body"] == 0 and w["kind"] == "fixed" for w in vehicle["wheels"])
+    turn, sideways = list(rng.uniform(-0.3, 0.3, 2)), [0.0, 0.0] if has_axle else list(rng.normal(size=2))
+    segment["twist"] = [[1.0, 0.0 if has_axle else rng.normal()], sideways, turn]
+    psi = list(rng.uniform(-1.3, 1.3, len(hinges)))
+    for b, (angle, _, _) in commanded_angles(vehicle, segment["twist"]).items():
+        psi[b - 1] = angle
+    start = {"velocity": list(rng.normal(size=3)), "pose": [0.0, 0.0, rng.uniform(-3, 3)], "psi": psi,
+             "hinge_rate": list(rng.normal(size=len(hinges)))}
+    return segment, start
+
+
+def from_core(vehicle: Case, start: Case, row: list[float]) -> tuple[list[Any], ...]:
+    """Headings, velocities and accelerations of the centres of mass, from the core's twists X and X'."""
+    count = len(vehicle["bodies"])
+    numbers = np.array(row).reshape(2, count, 3)
+    heading = [start["pose"][2]]
+    for number, hung in enumerate(vehicle["bodies"][1:]):
+        heading.append(heading[hung["parent"]] + start["psi"][number])
+    velocity, acceleration = [], []
+    for number, hung in enumerate(vehicle["bodies"]):
+        (x, y, w), (ax, ay, aw) = numbers[0, number], numbers[1, number]
+        arm = np.array(hung["com"]) if number else np.zeros(2)
+        own = np.array([ax, ay]) + w * left_of(np.array([x, y])) + aw * left_of(arm) - w * w * arm
+        velocity.append(turned(heading[number], np.array([x, y]) + w * left_of(arm)))
+        acceleration.append([*turned(heading[number], own), aw])
+    return heading, velocity, list(numbers[0, :, 2]), acceleration
+
+
+def outer_forces(vehicle: Case, segment: Case, heading: list[float], yaw_rate: list[float],
+                 spin: list[float]) -> np.ndarray:
+    bodies, wheels = vehicle["bodies"], vehicle["wheels"]
+    force = np.zeros(3 * len(bodies) + len(wheels))
+    force[:2] = turned(heading[0], np.array(segment["body_wrench"][:2])) + np.array(segment["world_force"])
+    arm = turned(heading[0], np.array(segment["point"]))
+    force[2] = segment["body_wrench"][2] + left_of(arm) @ np.array(segment["world_force"])
+    for b in range(1, len(bodies)):
+        joint, parent = bodies[b]["joint"], bodies[b]["parent"]
+        if joint["kind"] not in ("free", "motor"):
+            continue
+        angle, rate = heading[b] - heading[parent], yaw_rate[b] - yaw_rate[parent]
+        torque = segment["hinge_torque"][str(b)] - joint.get("damping", 0) * rate
+        torque -= joint.get("stiffness", 0) * (angle - joint.get("rest", 0))
+        if joint["kind"] == "motor":
+            torque += joint["gain"] * segment["hinge_U"][str(b)]
+        force[3 * b + 2] += torque
+        force[3 * parent + 2] -= torque
+    for number, given in enumerate(wheels):
+        force[3 * len(bodies) + number] = (given["gain"] * segment["U"][number] + segment["axle_torque"][number]
+                                           - given["damping"] * spin[number])
+    return force
+
+
+def spins(vehicle: Case, heading: list[float], velocity: list[Any], yaw_rate: list[float]) -> list[float]:
+    """Wheel speeds by which the contacts hold."""
+    found = []
+    for given in vehicle["wheels"]:
+        b = given["body"]
+        arm = turned(heading[b], np.array(given["at"]) - np.array(vehicle["bodies"][b]["com"]))
+        hub = velocity[b] + yaw_rate[b] * left_of(arm)
+        roller = given.get("roller", math.pi / 2)
+        along = turned(heading[b] + given["axle"] + roller, np.array([1.0, 0.0]))
+        found.append(float(along @ hub) / (given["radius"] * math.sin(roller)))
+    return found
+
+
+@pytest.mark.parametrize("name", VEHICLES)
+def test_accelerations_are_those_of_maximal_coordinates(name: str) -> None:
+    vehicle, rng = VEHICLES[name], np.random.default_rng(7)
+    moments = [random_moment(vehicle, rng) for _ in range(STATES)]
+    words = vehicle_words(vehicle)
+    for segment, start in moments:
+        words += [*input_words(vehicle, segment), *start_words(start), "rates reactions"]
+    rows = run(words)
+    for (segment, start), row, reactions in zip(moments, rows[::2], rows[1::2], strict=True):
+        heading, velocity, yaw_rate, acceleration = from_core(vehicle, start, row)
+        spin = spins(vehicle, heading, velocity, yaw_rate)
+        force = outer_forces(vehicle, segment, heading, yaw_rate, spin)
+        commanded: dict[int, float | None] = dict.fromkeys(range(1, len(heading)))
+        commanded |= {b: angles[2] for b, angles in commanded_angles(vehicle, segment["twist"]).items()}
+        commanded |= {int(b): rate[1] for b, rate in segment["hinge_rate"].items()}
+        maximal = Maximal(vehicle, np.array(heading), np.array(velocity), np.array(yaw_rate), np.array(spin))
+        expected = maximal.accelerations(force, commanded)[:3 * len(heading)]
+        off = np.abs(expected - np.concatenate(acceleration)).max() / max(1, np.abs(expected).max())
+        assert off < 1e-11
+        assert reactions[-1] < 1e-13  # what is left of the forces at body 0

@@ -1,0 +1,145 @@
+"""The two-file core: compiled in each language that it promises, with the bits of the core that it was made from."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from laconic.base.paths import SOURCE_DIR, built
+
+LANGUAGES = {"gcc": ("c99", "c11", "c17"), "clang": ("c99", "c11", "c17"),
+             "g++": ("c++11", "c++14", "c++17", "c++20"), "clang++": ("c++11", "c++14", "c++17", "c++20")}
+CASES = [(compiler, standard) for compiler in LANGUAGES if shutil.which(compiler) for standard in LANGUAGES[compiler]]
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Werror"]
+CORE = SOURCE_DIR / "core_c"
+TRAJECTORY = CORE / "tests" / "bits" / "trajectory_hash.c"
+BITS = {"double": ["cefe5b00452642bd", "5344d53e1679ed1e"], "single": ["ba4e7a6dd5f14330", "ecf7bee90946cdc7"]}
+OF_FIRMWARE = "-DLACONIC_WITH_EXPONENTIAL_GAUSS=0"  # of images with one method
+
+pytestmark = pytest.mark.skipif(not CASES, reason="neither gcc nor clang")
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder whose folder `laconic` holds the files, as a program of the README includes them."""
+    folder = tmp_path_factory.mktemp("pair")
+    shutil.copytree(built("amalgamation"), folder / "laconic")
+    return folder
+
+
+def run(*command: str | Path, folder: Path) -> str:
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def language(compiler: str) -> str:
+    return "c++" if compiler.endswith("++") else "c"
+
+
+@pytest.mark.parametrize(("compiler", "standard"), CASES)
+def test_it_compiles_without_a_warning_in_every_language_that_it_promises(compiler, standard, pair):
+    for name in ("laconic.c", "laconic_single.c"):
+        run(compiler, "-x", language(compiler), f"-std={standard}", *STRICT, "-fsyntax-only", name,
+            folder=pair / "laconic")
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("compiler", "standard"), [case for case in CASES if case[1][-2:] in ("99", "11", "20")])
+def test_every_public_header_stands_alone_in_every_language_that_it_promises(compiler, standard, tmp_path):
+    options = ["-x", language(compiler), f"-std={standard}", *STRICT, "-I", CORE / "include", "-fsyntax-only"]
+    for header in sorted((CORE / "include" / "laconic").glob("*.h")):
+        (tmp_path / header.name).with_suffix(".c").write_text(f"#include <laconic/{header.name}>\n", encoding="utf-8")
+    run(compiler, *options, *sorted(tmp_path.glob("*.c")), folder=tmp_path)
+
+
+def test_a_step_compiles_without_a_warning_for_sanitizers_too(tmp_path):
+    if shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    run("gcc", "-std=c99", "-Os", "-fsanitize=address,undefined", *STRICT, "-I", CORE / "include",
+        *(word for path in (CORE / "src").iterdir() for word in ("-I", path)), "-c",
+        CORE / "src" / "methods" / "exact_flow.c", "-o", "step.o", folder=tmp_path)
+
+
+@pytest.mark.parametrize(("compiler", "real", "effort"), [
+    ("gcc", "double", "-O2"), ("clang", "double", "-O1"), ("g++", "single", "-O1")])
+def test_without_any_option_for_bits_it_has_the_bits_of_the_core(compiler, real, effort, pair):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"no {compiler}")
+    info = Path("/proc/cpuinfo")
+    fusing = ["-march=x86-64-v3"] if info.exists() and {"avx2", "fma"} <= {*info.read_text().split()} else []
+    options = [effort, *fusing, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+    run(compiler, "-x", language(compiler), *options, *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c", "-o", "hash",
+        folder=pair)
+    assert run("./hash", folder=pair).split() == BITS[real]
+
+
+@pytest.mark.nightly
+def test_what_firmware_and_fmus_leave_out_changes_no_bit_of_the_other_methods(pair):
+    if shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    run("gcc", "-O1", OF_FIRMWARE, *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c", "-o", "small", folder=pair)
+    assert run("./small", folder=pair).split() == BITS["double"][:1]
+
+
+def test_the_example_of_the_readme_prints_what_the_readme_states(pair):
+    found = re.findall(r"```c\n(.*?)```\n\n```text\n(.*?)```", (SOURCE_DIR / "README.md").read_text("utf-8"), re.DOTALL)
+    (pair / "example.c").write_text(found[0][0], encoding="utf-8")
+    run(CASES[0][0], "-I.", "example.c", "laconic/laconic.c", "-o", "example", folder=pair)
+    assert run("./example", folder=pair) == found[0][1]
+
+
+BOTH = """
+#include "laconic/laconic.h"
+#include "laconic/laconic_single.h"
+
+int main(void) {
+    return (int)(laconic_self_test() + laconic_single_self_test()) + (sizeof(laconic_real) != 8) +
+           (sizeof(laconic_single_real) != 4);
+}
+"""
+
+
+@pytest.mark.nightly
+def test_one_program_holds_both_scalar_types_by_the_pair_with_names_of_its_own(pair):
+    (pair / "both.c").write_text(BOTH, encoding="utf-8")
+    files = ["both.c", "laconic/laconic.c", "laconic/laconic_single.c"]
+    run(CASES[0][0], *STRICT, "-I.", *files, "-o", "both", folder=pair)
+    run("./both", folder=pair)
+
+
+def test_options_that_break_its_promises_are_refused_and_only_in_its_own_file(pair):
+    (pair / "user.c").write_text('#include "laconic/laconic.h"\nint main(void) { return 0; }\n', encoding="utf-8")
+    run(CASES[0][0], "-ffast-math", "-fsyntax-only", "user.c", folder=pair)
+    done = subprocess.run([CASES[0][0], "-ffast-math", "-fsyntax-only", "laconic/laconic.c"], cwd=pair, text=True,
+                          capture_output=True, check=False)
+    assert done.returncode != 0
+    assert "laconic: -ffast-math" in done.stderr
+
+
+def test_it_is_made_the_same_twice_by_python_alone_and_names_version_and_licence(pair, tmp_path):
+    subprocess.run([sys.executable, "-S", "-m", "laconic_build.c", "amalgamation", str(tmp_path)], check=True,
+                   env={**os.environ, "PYTHONPATH": str(SOURCE_DIR / "packaging")})
+    texts = {path.name: path.read_bytes() for path in sorted(tmp_path.iterdir())}
+    assert texts == {path.name: path.read_bytes() for path in sorted((pair / "laconic").iterdir())}
+    licence = (SOURCE_DIR / "LICENSE").read_text(encoding="utf-8").splitlines()
+    for name in ("laconic.h", "laconic_single.h"):
+        head = texts[name].decode().split("*/")[0]
+        assert re.search(r"Laconic \d+\.\d+\.\d+\.", head)
+        assert all(line in head for line in licence)
+
+
+def test_every_package_has_the_version_of_the_header():
+    header = (SOURCE_DIR / "core_c/include/laconic/laconic.h").read_text(encoding="utf-8")
+    version = re.findall(r'^#define LACONIC_VERSION "(.*)"$', header, re.MULTILINE)[0]
+    elsewhere = {"modelDescription.xml": r'^    version="([\d.]+)"',
+                 "fmu/controller/modelDescription.xml": r'^    version="([\d.]+)"', "CHANGELOG.md": r"^## ([\d.]+)"}
+    for name, pattern in elsewhere.items():
+        text = (SOURCE_DIR / name).read_text(encoding="utf-8")
+        assert re.findall(pattern, text, re.MULTILINE)[:1] == [version], name

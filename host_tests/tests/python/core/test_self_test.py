@@ -1,0 +1,91 @@
+"""laconic_self_test() finds what options and modes do to arithmetic; what compilers admit does not compile."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+CORE = Path(__file__).parents[4] / "core_c"
+SOURCES = [CORE / "src/self_test.c", CORE / "tests/self_test_under.c"]
+COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
+SOUND = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-tree-slp-vectorize"]
+SILENCED = {  # as a compiler that defines no macro: the options of the refusals below
+    "finite": ["-ffinite-math-only", "-U__FINITE_MATH_ONLY__", "-D__FINITE_MATH_ONLY__=0"],
+    "associative": ["-funsafe-math-optimizations", "-U__ASSOCIATIVE_MATH__", "-U__RECIPROCAL_MATH__"],
+    "reciprocal": ["-freciprocal-math", "-U__RECIPROCAL_MATH__"],
+}
+X87 = ["-mfpmath=387", "-U__FLT_EVAL_METHOD__", "-D__FLT_EVAL_METHOD__=0"]
+
+pytestmark = pytest.mark.skipif(not COMPILERS, reason="neither gcc nor clang")
+
+
+def processor_has(flag: str) -> bool:
+    """Whether this processor is an x86 with a feature."""
+    info = Path("/proc/cpuinfo")
+    return info.exists() and flag in info.read_text().split()
+
+
+def compiled(compiler: str, options: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """The messages of the compiler about the self-test with its driver."""
+    return subprocess.run([compiler, "-w", "-I", str(CORE / "include"), *options, *map(str, SOURCES), "-lm",
+                           "-o", str(folder / "self_test")], capture_output=True, text=True, check=False)
+
+
+def found(compiler: str, options: list[str], folder: Path, mode: str = "nearest") -> str:
+    """What the self-test finds when it is compiled so and run in that mode."""
+    made = compiled(compiler, options, folder)
+    if "not supported" in made.stderr or "unknown" in made.stderr or "unrecognized" in made.stderr:
+        pytest.skip(f"{compiler} has no such option here")
+    assert made.returncode == 0, made.stderr
+    done = subprocess.run([str(folder / "self_test"), mode], capture_output=True, text=True, check=False)
+    if done.returncode == 77:
+        pytest.skip(f"no way known to set {mode} here")
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize(("options", "words"), [
+    (SOUND, "0 sound"),
+    ([*SOUND, *SILENCED["finite"]], "checks for NaN and infinity do not work"),
+    ([*SOUND, *SILENCED["associative"]], "in another order"),
+    ([*SOUND, *SILENCED["reciprocal"]], "by reciprocals"),
+    ([*SOUND, *X87], "keep more digits"),
+    ([*SOUND, "-ffp-contract=fast", "-mfma"], "are fused")], ids=["sound", *SILENCED, "x87", "fused"])
+def test_every_option_that_spoils_arithmetic_is_found(options, words, compiler, real, tmp_path):
+    if "-mfma" in options and not processor_has("fma"):
+        pytest.skip("this processor fuses nothing")
+    single = ["-DLACONIC_SINGLE"] if real == "single" else []
+    assert words in found(compiler, [*options, *single], tmp_path)
+
+
+@pytest.mark.parametrize("mode", ["up", "down", "zero", "ftz", "daz"])
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_every_mode_that_spoils_arithmetic_is_found(compiler, mode, tmp_path):
+    words = "flushed to zero" if mode in ("ftz", "daz") else "not rounded to nearest"
+    assert words in found(compiler, SOUND, tmp_path, mode)
+
+
+@pytest.mark.skipif("gcc" not in COMPILERS or not processor_has("avx2"), reason="needs gcc and a processor with FMA")
+def test_what_a_vectoriser_fuses_against_its_orders_is_found_where_it_does(tmp_path):
+    eager = ["-std=c99", "-O2", "-ffp-contract=off", "-march=x86-64-v3"]
+    made = ["gcc", *eager, "-I", str(CORE / "include"), "-S", "-o", "-", str(CORE / "src/geometry.c")]
+    listing = subprocess.run(made, capture_output=True, text=True, check=True).stdout
+    assert ("are fused" in found("gcc", eager, tmp_path)) == ("vfm" in listing)
+    assert found("gcc", [*eager, "-fno-tree-slp-vectorize"], tmp_path) == "0 sound"
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize(("option", "told_by"), [
+    ("-ffast-math", ("gcc", "clang")), ("-ffinite-math-only", ("gcc", "clang")),
+    ("-funsafe-math-optimizations", ("gcc",)), ("-freciprocal-math", ("gcc",))])
+def test_an_option_that_the_compiler_admits_does_not_compile(option, told_by, compiler, tmp_path):
+    if compiler not in told_by:
+        pytest.skip(f"{compiler} defines no macro for it; the self-test finds it")
+    made = compiled(compiler, [*SOUND, option], tmp_path)
+    assert made.returncode != 0
+    assert "laconic: -f" in made.stderr
+    assert "compile without it" in made.stderr

@@ -1,0 +1,114 @@
+"""The core's friction solver agrees with the oracle; host_tests/assurance/long/friction.py does the same for longer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from references.friction.agreement import LIMIT, Count, compare, energy_difference
+from references.friction.core_solver import CoreSolution, solve_in_core
+from references.friction.driven import drive, energy_gain
+from references.friction.hard import KINDS, hard_problem
+from references.friction.polish import polish
+from references.friction.problem import StepProblem
+from references.friction.residual import size_of
+from references.friction.vehicles import random_problem, random_vehicle
+
+COLD, HARD, VEHICLES, STEPS = 120, 12, 30, 40
+MOST_COLD_REFUSED, MOST_WARM_REFUSED = 1e-2, 1e-3
+
+
+def problems(count):
+    """Random cold steps."""
+    for seed in range(count):
+        random = np.random.default_rng(seed)
+        yield random_problem(random, random_vehicle(random))
+
+
+def test_cold_random_steps_agree_with_the_oracle_to_1e9_and_have_that_residual_and_few_are_refused():
+    count = Count()
+    for problem in problems(COLD):
+        compare(problem, count)
+    assert [text for text, _ in count.bad if "refused" not in text] == []
+    assert count.unsure == 0
+    assert max(count.residual, count.difference) <= LIMIT
+    assert count.may_refuse(MOST_COLD_REFUSED)
+
+
+def test_driven_vehicles_never_gain_energy_from_a_warm_step_nor_leave_the_residual_or_the_oracle():
+    count = Count()
+    for seed in range(VEHICLES):
+        drive(seed, STEPS, count)
+    assert [text for text, _ in count.bad if "refused" not in text] == []
+    assert count.may_refuse(MOST_WARM_REFUSED)
+    assert 0.0 < count.difference <= LIMIT
+    assert count.solved > 0.5 * VEHICLES * STEPS
+
+
+def test_a_vehicle_whose_wheels_hold_each_other_with_a_hundred_times_the_free_motion_is_hardly_ever_refused():
+    count = Count()
+    drive([1, 12], 200, count)
+    assert count.solved + count.refused == 200
+    assert count.refused <= 1
+    assert count.residual <= LIMIT
+
+
+def test_accepted_hard_steps_agree_with_the_oracle_to_1e9_in_the_norm_of_the_energy_and_have_that_residual():
+    count = Count()
+    for number in range(HARD):
+        kind = KINDS[number % len(KINDS)]
+        compare(hard_problem(kind, np.random.default_rng(number)), count, kind, energy_difference)
+    assert [text for text, _ in count.bad if "refused" not in text] == []
+    assert count.solved > 0.8 * HARD
+
+
+def test_in_single_precision_cold_steps_agree_with_the_oracle_to_its_digits():
+    worst, refused, tried = 0.0, 0, 0
+    for problem in problems(60):
+        if problem.wheels > 4:
+            continue
+        core, tried = solve_in_core(problem, "single"), tried + 1
+        refused += core.passes == 0
+        if core.passes:
+            exact, mass = polish(problem).z, np.sqrt(problem.masses())
+            size = np.linalg.norm(mass * np.concatenate([problem.free_nu, problem.free_speed + problem.drive_impulse(
+                np.zeros(problem.wheels)) / problem.inertia]))
+            worst = max(worst, np.linalg.norm(mass * (core.z - exact)) / size if size > 0.0 else 0.0)
+    assert worst <= 1e-3
+    assert refused <= 0.1 * tried
+
+
+def test_an_error_in_the_norm_of_the_energy_counts_by_what_the_speed_carries():
+    problem = next(problems(1))
+    exact = polish(problem).z
+    for place, mass in enumerate(problem.masses()):
+        off = exact.copy()
+        off[place] += 1e-3
+        assert energy_difference(problem, off, exact) == pytest.approx(
+            1e-3 * mass**0.5 / size_of(problem, exact), rel=1e-6)
+
+
+def test_a_wrong_solution_of_the_core_is_found(monkeypatch):
+    problem = next(problems(1))
+
+    def spoilt(problem):
+        core = solve_in_core(problem)
+        return CoreSolution(core.z * (1 + 1e-8), core.slip_impulse, core.passes)
+
+    monkeypatch.setattr("references.friction.agreement.solve_in_core", spoilt)
+    count = Count()
+    compare(problem, count)
+    assert len(count.bad) == 1 and "difference" in count.bad[0][0]
+
+
+def test_energy_that_grows_is_found():
+    problem = next(problems(1))
+    exact = polish(problem).z
+    assert energy_gain(problem, exact) <= 1e-12 < energy_gain(problem, 30.0 * exact)
+
+
+def test_a_case_read_from_its_file_is_the_same_to_the_last_bit(tmp_path):
+    problem = next(problems(1))
+    problem.save(tmp_path / "case.json", what="test")
+    again = StepProblem.load(tmp_path / "case.json")
+    assert all(np.array_equal(getattr(problem, name), value) for name, value in vars(again).items())

@@ -1,0 +1,153 @@
+"""The independent reference is right, and the core agrees with it wherever inputs, loads and frames are involved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from laconic.scene import read_scene
+from laconic.simulation import simulate, usual_signals
+from laconic.tools.verify.reference import Reference, reference_states
+from laconic.tools.verify.trajectories import error_of, expected_states, read_reference, vehicle_of
+from scene_text import ideal_scene_names
+
+CASES = {case.text("name"): case for case in read_reference(Path(__file__).parents[2] / "data" / "trajectories.json")}
+
+EVERYTHING = """
+[vehicle]
+mass_kg = 20.0
+yaw_inertia_kgm2 = 1.2
+com_x_m = -0.02
+com_y_m = 0.03
+wheel_radius_m = 0.05
+wheel_inertia_kgm2 = 0.004
+[vehicle.motor]
+resistance_ohm = 1.5
+torque_constant_Nm_per_A = 0.04
+back_emf_Vs_per_rad = 0.05
+gear_ratio = 12.0
+viscous_friction_Nms = 1e-5
+rotor_inertia_kgm2 = 2e-5
+[vehicle.payload]
+mass_kg = 7.0
+x_m = 0.1
+y_m = -0.05
+yaw_inertia_kgm2 = 0.1
+[[vehicle.wheel]]
+kind = "mecanum"
+x_m = 0.25
+y_m = 0.15
+axle_deg = -90
+roller_deg = 45
+[[vehicle.wheel]]
+kind = "roller"
+x_m = 0.2
+y_m = -0.15
+axle_rad = -1.4
+roller_rad = -0.9
+[[vehicle.wheel]]
+kind = "omni"
+distance_m = 0.3
+bearing_deg = 200
+axle_deg = 190
+[initial]
+velocity_body_m_per_s = [0.3, -0.1]
+yaw_rate_rad_per_s = 0.7
+x_m = 1.0
+y_m = -2.0
+heading_deg = 30
+[run]
+duration_s = 3.0
+step_s = 0.001
+[outputs]
+every_s = 0.1
+"""
+INPUTS = {
+    "none": "",
+    "steps": '[[input]]\nsignal = "voltage_V[2]"\nkind = "steps"\nt_s = [0.5, 1.5]\nvalue = [6.0, -2.0]\n',
+    "sine": '[[input]]\nsignal = "voltage_V[1]"\nkind = "sine"\namplitude = 8.0\nfrequency_Hz = 0.7\nphase_deg = 40\n',
+    "sum of two": '[[input]]\nsignal = "voltage_V[1]"\nkind = "sine"\namplitude = 8.0\nfrequency_Hz = 0.7\n'
+                  '[[input]]\nsignal = "voltage_V[1]"\nkind = "steps"\nt_s = [1.0]\nvalue = [3.0]\n',
+    "table": '[[input]]\nsignal = "axle_torque_Nm[3]"\nkind = "table"\nt_s = [0.2, 1.0, 2.0]\nvalue = [0.0, 1.5, -1]\n',
+    "body wrench": '[[input]]\nsignal = "body_force_N[2]"\nkind = "sine"\namplitude = 5.0\nfrequency_Hz = 0.5\n'
+                   '[[input]]\nsignal = "body_moment_Nm"\nkind = "steps"\nt_s = [0.0]\nvalue = [0.8]\n',
+    "world force": '[[input]]\nsignal = "world_force_N[1]"\nkind = "steps"\nt_s = [0.0, 1.0]\nvalue = [9.0, -4.0]\n'
+                   '[[input]]\nsignal = "world_force_N[2]"\nkind = "steps"\nt_s = [0.0]\nvalue = [3.0]\n'
+                   '[[input]]\nsignal = "world_force_point_m[1]"\nkind = "steps"\nt_s = [0.0]\nvalue = [0.2]\n'
+                   '[[input]]\nsignal = "world_force_point_m[2]"\nkind = "steps"\nt_s = [0.0]\nvalue = [-0.1]\n',
+}
+
+
+def values_of(segment) -> dict[str, float]:
+    """A reference segment's inputs by signal name."""
+    found = {}
+    if segment.has("U"):
+        found |= {f"voltage_V[{i}]": u for i, u in enumerate(segment.numbers("U"), start=1)}
+    if segment.has("body_wrench"):
+        names = ("body_force_N[1]", "body_force_N[2]", "body_moment_Nm")
+        found |= dict(zip(names, segment.numbers("body_wrench"), strict=True))
+    for key, name in (("world_force", "world_force_N"), ("point", "world_force_point_m")):
+        if segment.has(key):
+            found |= {f"{name}[{i}]": v for i, v in enumerate(segment.numbers(key), start=1)}
+    return found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_reference_follows_the_25_digit_trajectories(name):
+    case = CASES[name]
+    reference = Reference(vehicle_of(case))
+    initial = case.table("initial")
+    state = np.array([*initial.numbers("nu"), *initial.numbers("pose"), *[0.0] * len(reference.wheels)])
+    found, time_s = [], 0.0
+    for segment in case.tables("segments"):
+        end_s = time_s + segment.number("duration")
+        state = reference.solve(state, time_s, np.array([end_s]), values_of(segment), 1e-12, 1e-13)[-1]
+        found.append(state)
+        time_s = end_s
+    found, expected = np.array(found), expected_states(case)
+    for part in (slice(0, 3), slice(3, 6), slice(6, None)):
+        assert error_of(found[:, part], expected[:, part]) < 2e-11
+
+
+def agreement(scene) -> list[float]:
+    """Errors of ν, pose and wheel angles of the core against the reference."""
+    run = simulate(scene, usual_signals(scene))
+    states = reference_states(scene, run.time_s)
+    pose = np.column_stack([run.columns[name] for name in ("x_m", "y_m", "heading_rad")])
+    kinds = [(run.columns_of("nu_rad_per_s"), slice(0, 3)), (pose, slice(3, 6))]
+    if scene.wheel_count:
+        kinds.append((run.columns_of("wheel_angle_rad"), slice(6, None)))
+    return [error_of(found, states[:, part]) for found, part in kinds]
+
+
+@pytest.mark.parametrize("inputs", INPUTS.values(), ids=INPUTS.keys())
+@pytest.mark.parametrize("change", ["as it is", "fixed wheel", "locked wheel"])
+def test_core_agrees_with_motor_payload_and_every_kind_of_input(inputs, change, tmp_path):
+    text = EVERYTHING + inputs
+    at_rest = text.replace("[0.3, -0.1]", "[0.0, 0.0]").replace("rad_per_s = 0.7", "rad_per_s = 0.0")
+    if change == "fixed wheel":
+        text = at_rest.replace('kind = "omni"', 'kind = "fixed"')
+    elif change == "locked wheel":
+        text = at_rest.replace('kind = "omni"', 'kind = "omni"\nlocked = true')
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    assert max(agreement(read_scene(path))) < 3e-9
+
+
+@pytest.mark.parametrize("name", ideal_scene_names())
+def test_core_agrees_with_the_reference_on_every_scene_on_ideal_ground(name):
+    scene = read_scene(name)
+    short = scene.with_run(duration_s=min(scene.run.duration_s, 4000 * scene.run.step_s))
+    assert max(agreement(short)) < 2e-9
+
+
+def test_agreement_would_notice_a_wrong_motor_constant(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(EVERYTHING + INPUTS["steps"])
+    scene = read_scene(path)
+    run = simulate(scene, usual_signals(scene))
+    scene.vehicle["motor"]["gear_ratio"] *= 1.000001
+    states = reference_states(scene, run.time_s)
+    assert error_of(run.columns_of("nu_rad_per_s"), states[:, :3]) > 1e-7

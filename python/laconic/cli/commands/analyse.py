@@ -1,0 +1,97 @@
+"""Steady motions, stability, free motion, traction."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from laconic.base.outputs import write_text
+from laconic.cli.options import OutputFolder, SceneName, json_flag
+from laconic.errors import BadInput, ResultFails
+from laconic.tools.analyse.parts import PARTS
+
+if TYPE_CHECKING:
+    from laconic.base.progress import Advance
+    from laconic.tools.analyse.findings import Study
+
+
+
+@click.command("analyse")
+@click.argument("scene", type=SceneName())
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
+              help="Write report.md, report.json and pictures there.")
+@click.option("--only", type=click.Choice(PARTS), multiple=True, help="Only this part; may be given several times.")
+@click.option("--at", "at_s", type=float, default=0.0, metavar="T", help="Hold the inputs of this instant [s].")
+@click.option("--straight", type=(float, float), metavar="NU1 NU2",
+              help="Constant voltages for this straight motion, in rad/s, instead of the scene's inputs.")
+@click.option("--start", type=(float, float, float), metavar="NU1 NU2 NU3",
+              help="Where the free motion starts, in rad/s, instead of the scene's start.")
+@click.option("--parameter", metavar="NAME", help="What the bifurcation diagram varies: nu1, nu2, input_scale, or a "
+              "number of [vehicle] such as com_y_m.")
+@click.option("--from", "low", type=float, metavar="A", help="Where the bifurcation diagram begins.")
+@click.option("--to", "high", type=float, metavar="B", help="Where it ends.")
+@json_flag("Machine-readable result on stdout.")
+def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, straight: tuple[float, float] | None,
+            start: tuple[float, float, float] | None, parameter: str | None, low: float | None,
+            high: float | None, json_wanted: bool) -> None:
+    """Analyses SCENE: geometry, free motion, steady motions and their stability, bifurcations, traction.
+
+    Exit status 1 when a simulation with the core does not confirm a result of the analysis.
+    """
+    from laconic.base.progress import progress_bar
+    from laconic.scene import read_scene
+    from laconic.tools.analyse.analyse import chosen_subject
+    from laconic.tools.analyse.findings import StudyOptions
+    from laconic.tools.analyse.older_page import pictures_of_older_page
+    from laconic.tools.analyse.report import as_numbers, as_text
+    from laconic.tools.analyse.study import study
+
+    _check(low, high, straight, start)
+    options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
+    given = read_scene(scene)
+    subject = chosen_subject(given, options.parts, at_s)
+    with progress_bar("analysing", 100) as advance:
+        found = study(subject, options, lambda share, part: advance(90 * share, what=part))
+        pictures = _draw(found, out, advance)
+    numbers = as_numbers(found, pictures)
+    if out is not None:
+        older = pictures_of_older_page(out, pictures)
+        write_text(out / "report.md", as_text(found, pictures))
+        write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+        _remove(older)
+    click.echo(json.dumps(numbers, indent=1) if json_wanted else as_text(found, []))
+    if found.failures:
+        raise ResultFails("not confirmed: " + "; ".join(found.failures))
+
+
+def _check(low: float | None, high: float | None, straight: tuple[float, ...] | None,
+           start: tuple[float, ...] | None) -> None:
+    given = [("--from", low), ("--to", high)]
+    given += [("--straight", v) for v in straight or ()] + [("--start", v) for v in start or ()]
+    for name, value in given:
+        if value is not None and not abs(value) < 1e12:
+            raise BadInput(f"{name}: {value:g} is not usable; give a finite number below 1e12")
+    if low is not None and high is not None and not low < high:
+        raise BadInput(f"--from {low:g} --to {high:g}: the range is empty; give the smaller number first")
+
+
+def _remove(older: list[Path]) -> None:
+    for path in older:
+        path.unlink(missing_ok=True)
+    if older:
+        click.echo(f"laconic: removed {', '.join(path.name for path in older)}, of an older page in this folder",
+                   err=True)
+
+
+def _draw(found: Study, out: Path | None, advance: Advance) -> list[Path]:
+    if out is None:
+        return []
+    from laconic.tools.analyse.pictures import draw
+
+    advance(0, what="drawing")
+    pictures = draw(found, out)
+    advance(10, what="drawing")
+    return pictures

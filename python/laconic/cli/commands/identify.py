@@ -1,0 +1,89 @@
+"""Find parameters of a robot from recorded runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from laconic.base.outputs import is_stdout, write_text
+from laconic.cli.options import PICTURES, InputPath, OutputFile, SceneName, json_flag
+from laconic.cli.options_of_logs import SeveralAfter, map_option
+from laconic.errors import BadInput, ResultFails, shown
+
+LEFT_OUT = ("session", "run")
+
+
+@click.command("identify", cls=SeveralAfter)
+@click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
+@click.option("--scene", type=SceneName(), required=True, help="The robot with its nominal values.")
+@click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
+              help="Write the scene with the values found; - for stdout.")
+@click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
+              help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place "
+              "and heading (of the whole robot against the true pose), axle, roller (angles of each wheel), "
+              "common-radius (one of all wheels); on ground with friction drag (of rollers), friction, axle-friction, "
+              "wheel-friction (of each, as a share), viscous (of motors); controller (of the wheels' speeds); from "
+              "voltages or currents mass, yaw-inertia, wheel-inertia, motor-gain, motor-damping, resistance, "
+              "torque-constant.")
+@click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
+              help="How far radii and distances may be from nominal beforehand (standard deviation).")
+@map_option
+@click.option("--judge", type=InputPath(), multiple=True, metavar="LOG...",
+              help="Other runs, replayed with the values found: all words up to the next option.")
+@click.option("--leave-out", type=click.Choice(LEFT_OUT),
+              help="Judge each session (folder) or run by a fit on the others.")
+@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
+              help="Draw true, nominal and identified paths, the first run of each session.")
+@json_flag("Machine-readable result on stdout.")
+def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, prior_percent: float,
+            map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, plot: Path | None,
+            json_wanted: bool) -> None:
+    """Finds parameters of a scene from LOG..., recorded runs or folders of them.
+
+    Robust nonlinear least squares on the distance between the rolled and the true path, without a true pose on the
+    turn that a gyro felt; on ground with friction the core moves, its wheels held at the recorded speeds, and steady
+    currents count as well. Masses and motors are found from the wheel speeds that recorded voltages or currents give.
+    Each value comes with a 95 % interval; what the runs do not tell stays nominal, and it is stated which run would.
+    FITTED.toml is a complete scene, with sources and intervals in comments. Exit status 1 where the values found are
+    worse than the nominal ones on runs to judge or left out; with -o - the report goes to stderr.
+    """
+    from laconic.base.progress import progress_bar
+    from laconic.robot.identify import report
+    from laconic.robot.identify.fitted_toml import fitted_text
+    from laconic.robot.identify.geometry import geometry_of
+    from laconic.robot.identify.picture import draw
+    from laconic.robot.identify.study import identify
+    from laconic.robot.identify.words_of_errors import failures
+    from laconic.robot.logs import gather_logs
+    from laconic.scene import read_scene
+
+    if not 0.0 < prior_percent <= 100.0:
+        raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
+    given = read_scene(scene)
+    names = names_in(free)
+    parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
+    runs, _ = gather_logs(logs, map_path)
+    others = gather_logs(judge, map_path)[0] if judge else []
+    with progress_bar("identifying", 1 + len(runs)) as advance:
+        study = identify(given, runs, parameters, judge=others, leave_out=leave_out,
+                         with_controller="controller" in names, advance=advance)
+    if out is not None:
+        write_text(out, fitted_text(study))
+    if plot is not None:
+        draw(study, plot)
+    if json_wanted:
+        click.echo(json.dumps(report.as_numbers(study), indent=1))
+    else:
+        click.echo(report.as_text(study), err=out is not None and is_stdout(out))
+    if worse := failures(study):
+        raise ResultFails(worse[0])
+
+
+def names_in(free: str) -> tuple[str, ...]:
+    """The names of --free; BadInput for none or one twice."""
+    names = tuple(name.strip() for name in free.split(","))
+    if not all(names) or len(set(names)) != len(names):
+        raise BadInput(f"--free {shown(free)}: give names with commas between them, each once")
+    return names

@@ -1,0 +1,228 @@
+"""Run one scene through the core."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+
+from laconic.base.outputs import is_stdout, opened
+from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
+from laconic.cli.streams import warn
+from laconic.core import REALS
+from laconic.core.estimate import Errors, ErrorSizes
+from laconic.errors import Refused, ResultFails
+from laconic.pictures.film.moving_picture import FILMED, write_film
+from laconic.scene import METHODS, Scene, read_scene
+from laconic.scene.axle_lines import nearly_one_line
+from laconic.scene.standing import Standing, standing_of
+from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
+from laconic.simulation.csv_text import csv_text
+from laconic.simulation.run import is_watched
+
+FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
+ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the radius, slid with all of its weight
+
+
+@click.command("simulate")
+@click.argument("scene", type=SceneName())
+@one_of("--method", METHODS, "Method instead of the scene's")
+@click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
+@click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
+@click.option("-o", "--out", type=OutputFile(".csv", stdout=True), metavar="F.csv",
+              help="Write the outputs; - for stdout.")
+@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
+              help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
+@click.option("--film", type=OutputFile(".svg"), metavar="F.svg",
+              help="Draw a moving picture: the robot on its path, which a browser plays.")
+@click.option("--inputs", "inputs_wanted", is_flag=True,
+              help="Write the inputs as further columns of --out: what acts from each row on.")
+@click.option("--errors", "errors_wanted", is_flag=True,
+              help="Write the estimated error of each row as further columns of --out.")
+@click.option("--enclose", "enclose_wanted", is_flag=True,
+              help="Enclose the true motion and prove how far the core is from it; --out gets columns of both.")
+@json_flag("Machine-readable summary.")
+def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
+            plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool, enclose_wanted: bool,
+            json_wanted: bool) -> None:
+    """Runs SCENE, a TOML file or the name of a scene that comes with the project.
+
+    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
+    gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
+    would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
+    the exit status is 1. The estimated error of the steps and of rounding is told at the end: see
+    docs/error-estimate.md. --enclose proves what the true motion of the file's numbers is, as intervals: see
+    docs/enclosures.md.
+    """
+    check_step(step_s)
+    belongs_to("--out", bool(out), "--inputs", "--errors")
+    given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
+    written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
+    signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
+                             *(signals_to_enclose(given) if enclose_wanted else ())))
+    run = as_far_as_it_goes(given, tuple(signals))
+    enclosure = enclosed(run) if enclose_wanted else None
+    if out:
+        further = run.error_columns if errors_wanted else {}
+        write_csv(run, (*written, *(enclosure.columns if enclosure else ())), out, further)
+    if plot:
+        from laconic.pictures.plotting import simulation_picture
+        simulation_picture(run, plot)
+    if film:
+        write_film(run, film)
+    if json_wanted:
+        click.echo(json.dumps(summary(run, out, plot, film) | (enclosure.json if enclosure else {}), indent=1))
+    elif not (out and is_stdout(out)):
+        print_summary(run, out, plot, film, lines=enclosure.lines if enclosure else ())
+    for line in nearly_one_line(given):
+        warn(f"{given.path}: {line}")
+    if (standing := resting(run)) and standing.tips:
+        warn(f"{given.path}: the robot: {standing.tips}")
+    if run.grip and not run.grip.holds:
+        warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
+    if run.refused:
+        raise ResultFails(f"{run.refused}{kept_in(out, plot, film)}")
+
+
+def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
+    """The run, to its end or to the step that is refused."""
+    try:
+        return simulate(scene, signals, progress=True, estimated=True)
+    except RunRefused as cut_short:
+        return cut_short.run
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """What an enclosure adds to the outputs of its run."""
+
+    columns: tuple[str, ...]
+    lines: list[str]
+    json: dict[str, Any]
+
+
+def signals_to_enclose(scene: Scene) -> tuple[str, ...]:
+    """The states of a scene that can be enclosed."""
+    from laconic.tools.enclosure.readings import check_enclosable
+    from laconic.tools.enclosure.study import state_signals
+
+    check_enclosable(scene)
+    return state_signals(scene.wheel_count)
+
+
+def enclosed(run: Trajectory) -> Enclosure:
+    """Encloses the motion of a run, and gives the run its columns."""
+    from laconic.tools.enclosure.study import study_of
+    from laconic.tools.enclosure.tables import as_json, columns_of, lines_of
+
+    study = study_of(run)
+    columns = columns_of(study)
+    run.columns.update(columns)
+    return Enclosure(tuple(columns), lines_of(study), {"enclosure": as_json(study)})
+
+
+def resting(run: Trajectory) -> Standing | None:
+    """How the robot stands where the scene has data of the ground."""
+    return standing_of(run.scene) if is_watched(run.scene) else None
+
+
+def words_of_standing(run: Trajectory) -> list[str]:
+    """The loads, and whether they hold the robot."""
+    standing = resting(run)
+    if standing is None:
+        return []
+    return [standing.in_words(), *([f"the robot: {standing.tips}"] if standing.tips else [])]
+
+
+def kept_in(*paths: Path | None) -> str:
+    """Where the motion up to a refused step is."""
+    files = [str(path) for path in paths if path and not is_stdout(path)]
+    return f" (the run up to there is in {' and '.join(files)})" if files else ""
+
+
+def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path, further: Mapping[str, np.ndarray]) -> None:
+    """A header line; then time_s, the signals and further columns, with all digits."""
+    columns = [run.time_s, *(run.columns[name] for name in signals), *further.values()]
+    whole = [number for number, column in enumerate(columns) if column.dtype.kind == "i"]
+    with opened(path) as file:
+        file.write(",".join(("time_s", *signals, *further)) + "\n")
+        for lines in csv_text(np.column_stack(columns), whole):
+            file.write(lines)
+
+
+def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
+    """What was run and where it ended."""
+    standing = resting(run)
+    return {
+        "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
+        "step_s": run.scene.run.step_s, "tolerance": run.scene.run.tolerance, "real": run.scene.run.real,
+        "steps": run.steps, "seconds": run.seconds,
+        "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
+        "estimated_error": asdict(run.errors) if run.errors else None,
+        "no_slip": run.grip.as_json() if run.grip else None,
+        "standing": standing.as_json() if standing else None,
+        "refused": in_words(run.refused, run) if run.refused else None,
+        "files": [str(path) for path in files if path]}
+
+
+def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:
+    """Why a run ended before its time, and where."""
+    return {"time_s": run.steps * run.scene.run.step_s, "step": run.steps, "status": refused.status,
+            "message": str(refused)}
+
+
+def words_of_slip(run: Trajectory) -> list[str]:
+    """What slip took on ground with friction, and whether the step is longer than its first order deserves."""
+    if run.grip is None or run.grip.slip_loss_J is None:
+        return []
+    loss_J, step_s, vehicle = run.grip.slip_loss_J, run.scene.run.step_s, run.scene.vehicle
+    rounding_J = ROLLED * vehicle["mass_kg"] * vehicle["wheel_radius_m"]
+    told = [f"slip and dragging rollers took {loss_J:.3g} J; contact_state and slip_along_m_per_s of [outputs] tell "
+            "where" if loss_J > rounding_J else "no wheel slipped"]
+    if step_s > FRICTION_STEP_S:
+        told.append("ground with friction is stepped to first order, and losses are the first to be off: compare "
+                    f"path and losses with --step {FRICTION_STEP_S:g}")
+    return told
+
+
+def words_of_errors(errors: Errors | None, wheel_count: int) -> list[str]:
+    """How far the end is off, and the worst on the way."""
+    if errors is None:
+        return []
+    lines = [f"estimated error: {sizes_text(errors.now, wheel_count)}",
+             f"  largest of the run: {sizes_text(errors.largest, wheel_count)}"]
+    if errors.unknown:
+        lines.append(f"  steps of which no half is taken: {errors.unknown}; all that they change counts as error")
+    return lines
+
+
+def sizes_text(sizes: ErrorSizes, wheel_count: int) -> str:
+    """The sizes with their units; that of wheel angles where there are wheels."""
+    angles = f", wheel angles {sizes.wheel_angle_rad:.1e} rad" if wheel_count else ""
+    return (f"nu {sizes.nu_rad_per_s:.1e} rad/s, place {sizes.place_m:.1e} m, heading {sizes.heading_rad:.1e} rad"
+            f"{angles}")
+
+
+def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = ()) -> None:
+    """The same for people, with further lines."""
+    given, picked = run.scene.run.method, run.method
+    method = given if given == picked else f"{given} (picked {picked})"
+    taken = f"{run.steps} of {run.scene.steps()}" if run.refused else f"{run.steps}"
+    tolerance = run.scene.run.tolerance
+    found = "" if tolerance is None else f" (found for the tolerance {tolerance:g})"
+    click.echo(f"{run.scene.name}: {taken} steps of {run.scene.run.step_s:g} s{found} by {method}, "
+               f"{run.scene.run.real}, in {run.seconds:.2f} s")
+    click.echo(f"at {run.time_s[-1]:g} s:")
+    for name, values in run.columns.items():
+        click.echo(f"  {name:28} {values[-1]: .12g}")
+    for line in (*words_of_errors(run.errors, run.scene.wheel_count), *words_of_slip(run),
+                 *words_of_standing(run), *lines):
+        click.echo(line)
+    for path in files:
+        if path:
+            click.echo(f"wrote {path}")

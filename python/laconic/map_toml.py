@@ -1,0 +1,17 @@
+"""Reads the TOML of a map, in any of the encodings that logs may have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from laconic.errors import BadInput
+from laconic.scene.table import Table, read_toml
+from laconic.text_file import NotText, decoded
+
+
+def read_map_toml(path: Path) -> Table:
+    """The top table of a map; BadInput names the line that is wrong."""
+    try:
+        return read_toml(path, lambda data: decoded(data).text)
+    except NotText as why:
+        raise BadInput(f"{path}: {why}; give a map as TOML text") from None

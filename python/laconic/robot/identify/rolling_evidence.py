@@ -1,0 +1,137 @@
+"""What recorded runs with a true pose say about rolling: the distance between rolled and true path, over its length.
+
+This is the path error that `laconic replay` judges. Its residuals are sums: an error of one stretch moves all of the
+path after it. So the covariance of the score is built from the errors of single stretches, each with its effect on what
+follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from laconic.core import Core
+from laconic.errors import BadInput
+from laconic.robot.identify.parameter import Vehicle
+from laconic.robot.logs import Log
+from laconic.robot.replay.measures import LEAST_LENGTH_M, path_length
+from laconic.robot.replay.placing import fitted
+from laconic.robot.replay.rolling import path_of, rolling_of
+
+POINTS = 120      # of a path that are compared
+STRETCHES = 24    # of a run whose errors count as independent
+SHORT = 0.2       # of the usual length: a shorter stretch has no clear direction
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run, ready to be rolled many times."""
+
+    rotation_rad: np.ndarray
+    pose: np.ndarray
+    point: str
+    taken: np.ndarray       # samples that are compared
+    cuts: np.ndarray        # samples between which a stretch lies
+    scale: float            # 1 / (length · √points)
+    has_heading: bool = True
+
+    def path(self, moved: np.ndarray) -> np.ndarray:
+        """The path of displacements, from the true first pose; where positions alone are known, fitted to them."""
+        if self.has_heading:
+            return path_of(moved, self.pose[0])
+        return fitted(path_of(moved, np.zeros(3)), self.taken, self.pose[self.taken, :2])
+
+
+class RollingEvidence:
+    """Runs with a true pose, for `solve.fit`."""
+
+    directions = 2
+    difference = 0.0
+
+    def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
+        self._core, self._path = core, scene_path
+        self.sessions = [str(log.path.resolve().parent) for log in logs]
+        self.runs = [run_of(log) for log in logs]
+
+    def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Distances x, y between rolled and true path."""
+        rolling = rolling_of(self._core, vehicle, self._path)
+        return [path_residual(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
+
+    def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
+        """Of each stretch: its error, carried to all points of the path after it, times the Jacobian there."""
+        rolling = rolling_of(self._core, vehicle, self._path)
+        found = []
+        for run, jacobian in zip(self.runs, jacobians, strict=True):
+            path = run.path(rolling.moved(run.rotation_rad, run.point))
+            found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
+        return found
+
+    def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Of each stretch of each run: displacement ahead and to the left, turn."""
+        rolling = rolling_of(self._core, vehicle, self._path)
+        return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
+
+
+def run_of(log: Log) -> Run:
+    """BadInput for a log without a true pose, or whose true path has no length."""
+    pose = log.needs("pose", "identify")
+    seen = log.seen
+    length = path_length(log.time_s[seen], pose[seen])
+    if not length > LEAST_LENGTH_M:
+        raise BadInput(f"{log.path}: its true path has no length; give runs in which the robot moves")
+    last = len(seen) - 1
+    taken = seen[np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])]
+    cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
+    return Run(log.rotation_rad(), pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
+               log.has_heading)
+
+
+def path_residual(run: Run, path: np.ndarray) -> np.ndarray:
+    """Distances x, y of the compared points, over the path's length; their squares sum to the squared path error."""
+    found: np.ndarray = ((path - run.pose)[run.taken, :2] * run.scale).ravel()
+    return found
+
+
+def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
+    """jacobian: points × 2 × parameters."""
+    error = stretch_errors(run, path)
+    found = []
+    for index, (begin, end) in enumerate(zip(run.cuts[:-1], run.cuts[1:], strict=True)):
+        after = run.taken >= end
+        cos, sin = np.cos(path[begin, 2]), np.sin(path[begin, 2])
+        ahead, left, turn = error[index]
+        shift = np.array([cos * ahead - sin * left, sin * ahead + cos * left])
+        lever = path[run.taken[after], :2] - path[end, :2]
+        moved = shift + turn * np.column_stack([-lever[:, 1], lever[:, 0]])
+        found.append(np.einsum("kcp,kc->p", jacobian[after], moved) * run.scale)
+    return np.array(found)
+
+
+def stretch_errors(run: Run, path: np.ndarray) -> np.ndarray:
+    """What the motion of each stretch is off by, in the body's frame at its beginning."""
+    true = run.pose if run.has_heading else with_headings(run.pose, path, run.cuts)
+    return _relative(path, run.cuts) - _relative(true, run.cuts)
+
+
+def with_headings(pose: np.ndarray, path: np.ndarray, cuts: np.ndarray) -> np.ndarray:
+    """Positions with headings at the cuts: those of a path, turned as each of its stretches must be turned to go where
+    the positions go. A stretch that is too short to have a direction is turned as those around it."""
+    own, other = np.diff(path[cuts, :2], axis=0), np.diff(pose[cuts, :2], axis=0)
+    turn = np.arctan2(own[:, 0] * other[:, 1] - own[:, 1] * other[:, 0], (own * other).sum(axis=1))
+    size = np.minimum(np.hypot(*own.T), np.hypot(*other.T))
+    clear = np.flatnonzero(size > SHORT * np.median(size)) if size.any() else np.zeros(0, int)
+    turn = np.interp(np.arange(len(turn)), clear, np.unwrap(turn[clear])) if len(clear) else np.zeros(len(turn))
+    found = pose.copy()
+    found[cuts, 2] = path[cuts, 2] + np.append(turn, turn[-1:])
+    return found
+
+
+def _relative(pose: np.ndarray, cuts: np.ndarray) -> np.ndarray:
+    """Displacement of each stretch in the body's frame at its beginning, and turn."""
+    step, heading = np.diff(pose[cuts], axis=0), pose[cuts[:-1], 2]
+    cos, sin = np.cos(heading), np.sin(heading)
+    return np.column_stack([cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0], step[:, 2]])

@@ -1,0 +1,76 @@
+"""Upright joints above a wheel: they steer it, let it swivel as a caster, or turn a body that all wheels carry."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from laconic.robot.importer.placement import Array
+from laconic.robot.importer.robot_tree import HINGE, Joint, Robot
+
+UPRIGHT = np.cos(np.radians(10.0))  # of a swivel's axis
+NARROW_RAD = np.pi  # a caster turns farther than this
+NO_TRAIL, NO_TRAIL_M = 0.05, 1e-3  # of the wheel's radius, and at least
+NEAR = 2.0  # times its radius: a wheel that trails farther is carried by a body, not by a fork
+
+
+@dataclass(frozen=True, eq=False)
+class Swivel:
+    """The upright joint nearest to a wheel."""
+
+    joint: Joint
+    is_steered: bool
+    why: str
+    trail_m: float
+
+    @property
+    def name(self) -> str:
+        """The joint's."""
+        return self.joint.name
+
+
+def is_upright(joint: Joint) -> bool:
+    """A hinge with an upright axis."""
+    return joint.kind == HINGE and abs(joint.axis[2]) >= UPRIGHT
+
+
+def turntables(robot: Robot, wheels: Sequence[tuple[Joint, float]]) -> list[Joint]:
+    """Upright joints that carry every wheel (each with its radius): what they turn is the rest of the robot."""
+    places = np.array([wheel.point_m[:2] for wheel, _ in wheels])
+    if len(wheels) < 2 or np.ptp(places, axis=0).max() <= NEAR * min(radius for _, radius in wheels):
+        return []  # one wheel, or a twin caster
+    first, *others = (list(filter(is_upright, robot.chain(wheel))) for wheel, _ in wheels)
+    return [joint for joint in first if all(joint in chain for chain in others)]
+
+
+def swivel_of(robot: Robot, wheel: Joint, hub_m: Array, axle: Array, radius_m: float, held: Collection[Joint]
+              ) -> Swivel | None:
+    """None for a wheel below no upright joint but those that are held."""
+    joint = next((each for each in robot.chain(wheel) if is_upright(each) and each not in held), None)
+    if joint is None:
+        return None
+    trail = _trail(joint, hub_m, axle, radius_m)
+    return Swivel(joint, *_kind(joint, trail, radius_m), trail)
+
+
+def _trail(joint: Joint, hub_m: Array, axle: Array, radius_m: float) -> float:
+    """How far the wheel stands from the swivel's axis along the way that it rolls."""
+    ground_z = hub_m[2] - radius_m
+    foot = joint.point_m + joint.axis * ((ground_z - joint.point_m[2]) / joint.axis[2])
+    rolling = np.array([-axle[1], axle[0]])
+    return float(abs((hub_m - foot)[:2] @ rolling))
+
+
+def _kind(joint: Joint, trail_m: float, radius_m: float) -> tuple[bool, str]:
+    """Whether it steers, and why."""
+    has_none = trail_m <= max(NO_TRAIL * radius_m, NO_TRAIL_M)
+    trail = "zero trail" if has_none else f"trail {1e3 * trail_m:.0f} mm"
+    if joint.commands:
+        return True, f"{trail}, commanded by {joint.commands[0].what}"
+    if has_none:
+        return True, trail
+    if joint.is_limited and joint.range_rad < NARROW_RAD:
+        return True, f"{trail}, turns within limits of {np.degrees(joint.range_rad):.0f}°"
+    return False, f"{trail}, no command"

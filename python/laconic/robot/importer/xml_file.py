@@ -1,0 +1,84 @@
+"""The XML of a robot's file, in the encoding that its first line names, as XML parsers read it."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+from laconic.errors import BadInput, reason_of
+
+Element = ElementTree.Element
+MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual robot
+
+
+def xml_root(path: Path, why_not: str) -> Element:
+    """The outermost element; BadInput begins with `why_not` for a file that is no XML."""
+    return root_of(path, bytes_of(path), why_not)
+
+
+def bytes_of(path: Path) -> bytes:
+    """All of a file; BadInput for a folder, a device or a pipe, which have no end, and for one beyond all robots."""
+    try:
+        found = path.stat()
+        if not stat.S_ISREG(found.st_mode):
+            what = "is a directory" if stat.S_ISDIR(found.st_mode) else "is no regular file"
+            raise BadInput(f"{path}: {what}; give the file of a robot")
+        if found.st_size > MOST_BYTES:
+            raise BadInput(f"{path}: has {found.st_size / 2**20:.0f} MiB, more than the {MOST_BYTES / 2**20:g} that "
+                           "are read; give the file of a robot, with its meshes in files of their own")
+        return path.read_bytes()
+    except OSError as error:
+        raise BadInput(f"{path}: {reason_of(error)}") from None
+
+
+def root_of(path: Path, text: bytes | str, why_not: str) -> Element:
+    """The same of a text that is there. Prefixes stay parts of names, since many files use some that they do not
+    declare."""
+    builder = ElementTree.TreeBuilder()
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse(text, True)
+        root: Element = builder.close()
+    except expat.ExpatError as error:
+        if isinstance(text, bytes) and _lacks_encoding(text):
+            raise BadInput(f"{path}: is no text in UTF-8, and its first line names no other encoding; save it as "
+                           'UTF-8, or begin it with <?xml version="1.0" encoding="ISO-8859-1"?>') from None
+        raise BadInput(f"{path}: {why_not}: {_where(error)}") from None
+    except (LookupError, ValueError):
+        raise BadInput(f"{path}: {why_not}: unknown encoding in its first line; save it as UTF-8") from None
+    return root
+
+
+PLACED = "line {0}, column {1}"
+FAULTS = {  # by names of expat's errors
+    "XML_ERROR_NO_ELEMENTS": "it has no element",
+    "XML_ERROR_TAG_MISMATCH": f"{PLACED}: the element that is closed is not the one that was opened last",
+    "XML_ERROR_DUPLICATE_ATTRIBUTE": f"{PLACED}: an attribute is given twice",
+    "XML_ERROR_JUNK_AFTER_DOC_ELEMENT": f"{PLACED}: something follows the end of the outermost element",
+    "XML_ERROR_UNCLOSED_TOKEN": f"{PLACED}: a tag is not closed",
+    "XML_ERROR_UNDEFINED_ENTITY": f"{PLACED}: an entity (&…;) that is not defined",
+    "XML_ERROR_UNKNOWN_ENCODING": "unknown encoding in its first line; save it as UTF-8",
+    "XML_ERROR_INCORRECT_ENCODING": f"{PLACED}: it is not in the encoding that its first line names",
+    "XML_ERROR_AMPLIFICATION_LIMIT_BREACH": "its entities stand for far more text than it has"}
+
+
+def _where(error: expat.ExpatError) -> str:
+    """What is wrong, and where."""
+    codes = {name: getattr(expat.errors, name, None) for name in FAULTS}
+    texts = {expat.errors.codes[text]: FAULTS[name] for name, text in codes.items() if text in expat.errors.codes}
+    return texts.get(error.code, f"{PLACED}: no well-formed XML").format(error.lineno, error.offset + 1)
+
+
+def _lacks_encoding(text: bytes) -> bool:
+    """XML by its beginning, not in UTF-8, without a word of what else it is in."""
+    try:
+        text.decode("utf-8")
+    except UnicodeDecodeError:
+        return text.lstrip().startswith(b"<") and b"encoding" not in text[:100]
+    return False

@@ -1,0 +1,95 @@
+"""Finds the logs among files and folders, and for each the map of the project that recognises it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from laconic.base.paths import exists
+from laconic.errors import BadInput
+from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
+from laconic.robot.logs.log import Log
+from laconic.robot.logs.read import read_log
+from laconic.robot.logs.text_table import text_of
+
+ENDINGS = (".csv", ".csv.gz", ".txt", ".blf", ".asc")
+OF_CAN = (*ENDINGS[3:], ".log", ".trc", ".asc.gz", ".blf.gz", ".log.gz", ".trc.gz")
+OF_TEXT = ENDINGS[:3]
+
+
+def natural(path: Path) -> list[object]:
+    """Sorting key: numbers inside names by their value."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", str(path))]
+
+
+def gather_logs(given: Sequence[Path], map_path: Path | None = None) -> tuple[list[Log], list[Path]]:
+    """(every run, files of folders that are none); a file that was named itself must be a run."""
+    maps = [read_map(map_path)] if map_path else project_maps()
+    logs, skipped = [], []
+    endings = ENDINGS if map_path is None else OF_CAN if maps[0].format == "can" else OF_TEXT
+    for path in files_of(given, endings):
+        if (columns := map_for(path, maps, is_given=map_path is not None)) is None:
+            if path in given:
+                raise unknown(path, maps)
+            if path.name not in {each.metadata for each in maps}:
+                skipped.append(path)
+            continue
+        try:
+            logs.append(read_log(path, columns))
+        except BadInput as reason:
+            if path in given or "has no column" not in str(reason):
+                raise
+            skipped.append(path)
+    if not logs:
+        raise BadInput(f"{given[0] if given else 'LOG'}: holds no log that a map recognises; give another folder, or "
+                       "the map of its columns with --map")
+    return logs, skipped
+
+
+def files_of(given: Sequence[Path], endings: tuple[str, ...] = ENDINGS) -> list[Path]:
+    """Files as they are named, and those of folders with the ending of a log, sorted by the numbers in their names."""
+    found: list[Path] = []
+    for path in given:
+        if exists(path) and path.is_dir():
+            inside = [each for each in path.rglob("*") if each.is_file() and each.name.lower().endswith(endings)]
+            if not inside:
+                raise BadInput(f"{path}: holds no {_in_words(endings)}; give a folder with recorded runs")
+            found += sorted(inside, key=natural)
+        else:
+            found.append(path)
+    return list(dict.fromkeys(found))
+
+
+def _in_words(endings: tuple[str, ...]) -> str:
+    return {OF_CAN: "BLF, ASC, candump or TRC file", OF_TEXT: "CSV file"}.get(endings, "CSV file, BLF or ASC file")
+
+
+def map_for(path: Path, maps: Sequence[ColumnMap], *, is_given: bool) -> ColumnMap | None:
+    """The first map that recognises a file; a map that was given is taken for every file but its own metadata."""
+    if is_given:
+        return None if maps[0].metadata and path.name == maps[0].metadata else maps[0]
+    return next((each for each in maps if fits(each, path, _names(path, each))), None)
+
+
+def _names(path: Path, columns: ColumnMap) -> list[str]:
+    """The names of the columns in all header lines that this map expects; none where it takes none."""
+    if columns.format == "can" or not columns.recognise.get("names"):
+        return []
+    try:
+        lines = text_of(path).lines[: columns.header_lines]
+    except BadInput:
+        return []
+    return [name.strip().strip('"') for line in lines for name in line.split(columns.separator)]
+
+
+def unknown(path: Path, maps: Sequence[ColumnMap]) -> BadInput:
+    """Why a file is no log: it cannot be read, or no map knows it."""
+    try:
+        if not text_of(path).text.strip():
+            return BadInput(f"{path}: is empty, so it has no samples; give a recorded run")
+    except BadInput as reason:
+        return reason
+    return BadInput(f"{path}: no map recognises it (known are {', '.join(each.name for each in maps)}); a CSV of "
+                    "signals has the first column time_s and commas between columns, other columns need their map: "
+                    "give it with --map")

@@ -1,0 +1,97 @@
+"""Columns that begin again: counters of so many values, angles within one turn. By `wrap` of the map they become
+continuous; without it a jump of half the range is one line, as it would be read as a backward turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.robot.logs.units import TICK
+
+TURNS = {"rad": 2.0 * np.pi, "deg": 360.0, "turn": 1.0}
+COUNTERS = tuple(float(1 << bits) for bits in (8, 10, 12, 13, 14, 15, 16, 18, 20, 24, 32))
+TOLERANCE = 2e-3        # of a turn: angles are written with few decimals
+UNCERTAIN = 0.45        # of the wrap, from one sample to the next: the direction may be the other one
+MANY = 20.0             # times the usual step: a jump, in a column whose unit is not known
+SMALL = 4.0             # steps around a jump that a counter's size may be off by
+
+Place = Callable[[int], str]
+"""Names a sample by its index."""
+
+
+def modulus_of(unit: str, wrap: float | bool | None, turn: float, scale: float) -> float | None:
+    """Where a column begins again, in its own numbers; None: never, or not said. `turn`: ticks of one turn."""
+    if wrap is True:
+        return (turn if unit == TICK else TURNS[unit]) / abs(scale)
+    return None if wrap is None or wrap is False else float(wrap)
+
+
+def continuous(path: Path, name: str, values: np.ndarray, modulus: float, unit: str,
+               place: Place) -> tuple[np.ndarray, str | None]:
+    """(a column without its jumps, a remark where its direction is uncertain); BadInput beyond the modulus."""
+    least, most = int(np.argmin(values)), int(np.argmax(values))
+    span = float(values[most] - values[least])
+    if span > modulus * (1.0 + TOLERANCE) or (unit == TICK and span >= modulus):
+        raise BadInput(f"{path}: {name} goes from {values[least]:.9g} ({place(least)}) to {values[most]:.9g} "
+                       f"({place(most)}), more than wrap = {modulus:.9g} lets it; correct wrap in the map")
+    return values[:1] + np.concatenate([[0.0], np.cumsum(folded(np.diff(values), modulus))]), _doubt(
+        name, np.diff(values), modulus, place)
+
+
+def folded(steps: np.ndarray, modulus: float) -> np.ndarray:
+    """The shorter way around for each step."""
+    found: np.ndarray = np.remainder(steps + 0.5 * modulus, modulus) - 0.5 * modulus
+    return found
+
+
+def _doubt(name: str, steps: np.ndarray, modulus: float, place: Place) -> str | None:
+    size = np.abs(folded(steps, modulus))
+    if not len(size) or size.max() < UNCERTAIN * modulus:
+        return None
+    worst = int(np.argmax(size))
+    return (f"{name} changes by {100.0 * size[worst] / modulus:.0f} % of wrap = {modulus:.9g} until "
+            f"{place(worst + 1)}, so its direction is uncertain; record more often")
+
+
+def refuse_jumps(path: Path, name: str, values: np.ndarray, turn: float, place: Place) -> None:
+    """BadInput for a column that jumps back by half of its range or more; `turn`: one turn in its own numbers."""
+    steps = np.diff(values)
+    jump = _jump(steps, float(np.ptp(values)) if len(values) else 0.0, turn)
+    if jump is None:
+        return
+    guess = _size(steps, jump, values, turn)
+    remedy = f"wrap = {guess:.9g}" if guess else "wrap, the number at which it begins again,"
+    raise BadInput(f"{path}: {place(jump + 1)}: {name} jumps from {values[jump]:.9g} to {values[jump + 1]:.9g}, half "
+                   f"of its range or more; give {remedy} under [wheel_angle] in the map if it begins again there, else "
+                   "wrap = false")
+
+
+def _jump(steps: np.ndarray, span: float, turn: float) -> int | None:
+    """The first step that no wheel takes: half the range or more, against the steps around it."""
+    moving = np.flatnonzero(steps)
+    if len(moving) < 2 or not span > 0.0:
+        return None
+    usual = float(np.median(np.abs(steps[moving])))
+    least = min(0.5 * turn, MANY * usual)
+    for number, index in enumerate(moving):
+        size = abs(steps[index])
+        if size < 0.5 * span or size < least:
+            continue
+        around = [steps[moving[other]] for other in (number - 1, number + 1) if 0 <= other < len(moving)]
+        if all(np.sign(each) == -np.sign(steps[index]) for each in around):
+            return int(index)
+    return None
+
+
+def _size(steps: np.ndarray, jump: int, values: np.ndarray, turn: float) -> float | None:
+    """The usual size of a counter or angle that explains a jump; None where none does."""
+    others = np.delete(np.abs(steps), jump)
+    near = SMALL * float(np.median(others[others > 0.0])) if (others > 0.0).any() else 0.0
+    span, size = float(np.ptp(values)), abs(float(steps[jump]))
+    for each in sorted({turn, *TURNS.values(), *COUNTERS}):
+        if span <= each * (1.0 + TOLERANCE) and abs(each - size) <= max(near, TOLERANCE * each):
+            return each
+    return None

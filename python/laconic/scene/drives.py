@@ -1,0 +1,99 @@
+"""`[rig.drives]`: the motor drives between a controller's bus and the wheels, for `laconic play`.
+
+A value is one number for all drives or a list with one for each; what is not given gets its value in
+laconic.can.play.settings, where the protocol and the vehicle's motor are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from laconic.scene.keys import DRIVE_NUMBERS, PROTOCOLS, key_of, read_choice, read_number
+from laconic.scene.table import Table
+
+DRIVE_PROTOCOLS = tuple(PROTOCOLS)
+NO_DRIVE = False  # in the list node_ids: a wheel without a drive
+
+NUMBERS = tuple(key.path.rpartition(".")[2] for key in DRIVE_NUMBERS)
+"""Keys of [rig.drives] that are a number of each drive."""
+MOST_COUNTS = 2**31 - 1
+LONGEST_WATCHDOG_S = 1000.0
+DIVISORS = {"gear_ratio": (1e-6, 1e6), "torque_constant_Nm_per_A": (1e-9, 1e9)}  # sizes that a drive can divide by
+
+
+@dataclass(frozen=True)
+class Drives:
+    """What `[rig.drives]` gives: tuples with one entry for each wheel, 0 for wheels without a drive."""
+
+    protocol: str | None = None
+    driven: tuple[bool, ...] = ()             # whether a wheel has a drive
+    node_ids: tuple[int, ...] | None = None
+    watchdog_s: float | None = None           # None: the protocol's own
+    numbers: dict[str, tuple[float, ...]] = field(default_factory=dict)  # by key, only those that are given
+
+
+def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]]) -> Drives:
+    """`[rig.drives]` of a vehicle with these wheels; a wheel with driven = false has no drive."""
+    if not wheels:
+        table.fail("protocol", "drives turn wheels, and the vehicle has none; take [rig.drives] out")
+    protocol = read_choice(table, "protocol")
+    driven, node_ids = _node_ids(table, [bool(wheel.get("driven", True)) for wheel in wheels])
+    numbers = {key: _numbers(table, key, driven) for key in NUMBERS if table.has(key)}
+    watchdog_s = read_number(table, "watchdog_s")
+    if watchdog_s is not None and watchdog_s > LONGEST_WATCHDOG_S:
+        table.fail("watchdog_s", f"is {watchdog_s:g}; give {LONGEST_WATCHDOG_S:g} s or less, or 0 for none")
+    table.done()
+    return Drives(protocol, driven, node_ids, watchdog_s, numbers)
+
+
+def _node_ids(table: Table, driven: list[bool]) -> tuple[tuple[bool, ...], tuple[int, ...] | None]:
+    """Which wheels have a drive, and its node id; in a list as long as the wheels `false` stands for none."""
+    if not table.has("node_ids"):
+        return tuple(driven), None
+    given = list(table.value("node_ids", ..., (list,), "a list of whole numbers, one for each wheel, false for none"))
+    if len(given) == sum(driven) < len(driven):
+        rest = iter(given)
+        given = [next(rest) if has_motor else NO_DRIVE for has_motor in driven]
+    if len(given) != len(driven):
+        table.fail("node_ids", f"has {len(given)} entries; give one for each of the {len(driven)} wheels, false for a "
+                   "wheel without a drive")
+    for number, (node_id, has_motor) in enumerate(zip(given, driven, strict=True), start=1):
+        if node_id is not NO_DRIVE and (isinstance(node_id, bool) or not isinstance(node_id, int)):
+            table.fail("node_ids", f"holds {str(node_id).lower()}; give whole numbers, or false for a wheel without a "
+                       "drive")
+        if node_id is not NO_DRIVE and not has_motor:
+            table.fail("node_ids", f"gives wheel {number} a drive, which has driven = false; give false there")
+    has_drive = tuple(node_id is not NO_DRIVE for node_id in given)
+    if not any(has_drive):
+        table.fail("node_ids", "gives no wheel a drive; give at least one node id")
+    return has_drive, tuple(0 if node_id is NO_DRIVE else node_id for node_id in given)
+
+
+def _numbers(table: Table, key: str, driven: tuple[bool, ...]) -> tuple[float, ...]:
+    """One number for each wheel, 0 where there is no drive."""
+    given = table.value(key, ..., (int, float, list), "a number, or a list with one for each drive")
+    if isinstance(given, list):
+        values = list(table.numbers(key))
+        if len(values) == sum(driven):
+            rest = iter(values)
+            values = [next(rest) if has_drive else 0.0 for has_drive in driven]
+        if len(values) != len(driven):
+            table.fail(key, f"has {len(values)} entries; give one number, or {sum(driven)}, one for each drive")
+    else:
+        values = [table.number(key)] * len(driven)
+    for value, has_drive in zip(values, driven, strict=True):
+        if has_drive:
+            _check(table, key, value)
+    return tuple(value if has_drive else 0.0 for value, has_drive in zip(values, driven, strict=True))
+
+
+def _check(table: Table, key: str, value: float) -> None:
+    """Fails for a number that no drive can have."""
+    key_of(table, key).check(table, value)
+    least, most = DIVISORS.get(key, (0.0, float("inf")))
+    if not least <= abs(value) <= most:
+        table.fail(key, f"is {value:g}; give a size from {least:g} to {most:g}")
+    if key == "encoder_counts" and (value != int(value) or value > MOST_COUNTS):
+        table.fail(key, f"is {value:g}; give a whole number of counts of one turn, up to {MOST_COUNTS}")

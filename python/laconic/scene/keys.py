@@ -1,0 +1,219 @@
+"""What the core does not know of a scene's keys: kind, rule, default and words of each, beside the check by its rule.
+
+Reading and the scene reference (laconic.scene.reference) take both from here. A key that is a field of the core has
+kind, rule and need there and its words in modelDescription.xml; of it stands here only what a file has otherwise.
+`[#]` is one of several tables.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from laconic.core.fields import ABOVE_0
+from laconic.scene.table import NO_HINTS, REQUIRED, Table
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a number must satisfy; `words` go on after "give", `range` stands in the reference."""
+
+    words: str
+    range: str
+    holds: Callable[[float], bool]
+
+
+POSITIVE = Rule("a value above 0", "above 0", lambda value: value > 0.0)
+FRICTION = Rule("a value above 0 (1e-6 is ice)", "above 0", lambda value: value > 0.0)
+NOT_NEGATIVE = Rule("a value of 0 or more", "0 or more", lambda value: value >= 0.0)
+SECONDS = Rule("seconds, 0 for none", "0 or more", lambda value: value >= 0.0)
+SWINGS = Rule("another value, or take this input out, which would do nothing", "not 0", lambda value: value != 0.0)
+NOT_ZERO = Rule("another value, below 0 for a shaft that turns the other way", "not 0", lambda value: value != 0.0)
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key; empty words are those of the core's field."""
+
+    path: str
+    kind: str = ""              # what its value is
+    meaning: str = ""
+    default: Any = REQUIRED     # its value where it is left out; None: `usual` tells what holds then
+    usual: str = ""
+    rule: Rule | None = None
+    range: str = ""             # in words, where no rule has it
+    choices: Mapping[str, str] | None = None  # words that it may be, and what each means
+
+    def check(self, table: Table, value: float) -> None:
+        """Fails for a number that breaks the rule."""
+        if self.rule is not None and not self.rule.holds(value):
+            instead = f", or take it out for {self.usual}" if self.usual else ""
+            table.fail(self.path.rpartition(".")[2], f"is {value:g}; give {self.rule.words}{instead}")
+
+
+A_NUMBER, A_LIST, TEXT = "number", "list of numbers", "text"
+OF_DRIVES = "number, or list with one for each drive"
+PLAY = "see [play](play.md#the-drives)"
+
+WHEEL_KINDS = {
+    "omni": "rollers across the axle", "mecanum": "rollers at an angle, usually 45°", "roller": "rollers at any angle",
+    "fixed": "an ordinary wheel, not steered"}
+INPUT_KINDS = {
+    "steps": "holds each value from its instant on, 0 before the first",
+    "table": "linear between the instants, constant outside",
+    "sine": "amplitude · sin(2π · frequency · t + phase)"}
+MOTOR_CIRCUITS = {  # laconic_motor_circuit
+    "driven": "its controller sets the voltage", "open": "switched off, only viscous friction is left",
+    "shorted": "brakes by its back-EMF"}
+PROTOCOLS = {  # of drives, numbered from 1 on the wire
+    "canopen": "CiA 301 and 402", "odrive": "ODrive CANSimple", "robomaster": "C620", "moteus": "moteus, CAN FD",
+    "robomaster-c610": "C610"}
+REALS = {"double": "64 bits", "single": "32 bits, as on a microcontroller"}
+
+TABLES = {
+    "": "At the top of the file.",
+    "vehicle": "Totals of the robot with its wheels, without payload, about its centre of mass. Must be given.",
+    "vehicle.motor": "The motor at its shaft, before the gear; instead of `motor_gain_Nm_per_V` and "
+                     "`motor_damping_Nms`.",
+    "vehicle.drive": "Limits of these motors and their supply; needs `[vehicle.motor]`.",
+    "vehicle.wheel[#]": "One for each wheel, numbered from 1. Without any, the vehicle is a sliding puck.",
+    "vehicle.support[#]": "One for each ball caster: it carries a normal load, nothing else.",
+    "vehicle.payload": "A mass fastened to the body.",
+    "ground": "Friction or a slope; without it the ground is level and holds every wheel.",
+    "initial": "Start of the motion; without it at rest at the world's origin.",
+    "input[#]": "What acts on the vehicle. Several inputs of one signal add up.",
+    "run": "How long, in what steps, by which method. Must be given.",
+    "outputs": "What `--out` writes.",
+    "sensors": "See [sensors](sensors.md).",
+    "sensors.imu": "An inertial measurement unit on the body.",
+    "sensors.encoder": "An encoder at each wheel.",
+    "speed_controller": "What turned set speeds of the wheels into currents on a recorded robot; for "
+                        "`laconic replay --inputs set-speeds` alone. Needs `[vehicle.motor]`.",
+    "rig": "What a CAN bus needs to know; for `laconic rig` and `laconic play`.",
+    "rig.drives": f"The motor drives between a controller's bus and the wheels; {PLAY}."}
+"""Every table of a scene, in the order of the reference."""
+
+
+def _drive(name: str, rule: Rule, meaning: str, usual: str = "the protocol's") -> Key:
+    return Key(f"rig.drives.{name}", OF_DRIVES, meaning, None, usual, rule)
+
+
+DRIVE_NUMBERS = (
+    _drive("encoder_counts", POSITIVE, "Counts of one turn of the motor's shaft, a whole number"),
+    _drive("gear_ratio", NOT_ZERO, "Turns of the shaft for one of the wheel; below 0: mounted the other way",
+           "the motor's"),
+    _drive("torque_constant_Nm_per_A", POSITIVE, "Torque of the shaft per ampere", "the motor's"),
+    _drive("back_emf_Vs_per_rad", NOT_NEGATIVE, "Voltage per speed of the shaft", "the motor's"),
+    _drive("current_limit_A", POSITIVE, "Largest current", "that of `[vehicle.drive]`"),
+    _drive("speed_limit_rad_per_s", NOT_NEGATIVE, "Of the set value of speed and position control; 0: none"),
+    _drive("supply_V", NOT_NEGATIVE, "Limits, with the winding, the current that the back-EMF leaves; 0: no limit",
+           "that of `[vehicle.drive]`"),
+    _drive("winding_resistance_ohm", NOT_NEGATIVE, "0: no limit of the current by the supply", "the motor's"),
+    _drive("current_bandwidth_rad_per_s", NOT_NEGATIVE, "Lag of the current; 0: it follows at once"),
+    _drive("position_gain_per_s", NOT_NEGATIVE, "Set speed for an error of the shaft's angle",
+           "from the inertia that a wheel turns"),
+    _drive("speed_gain_As", NOT_NEGATIVE, "Current for an error of the shaft's speed",
+           "from the inertia that a wheel turns"),
+    _drive("speed_integral_gain_A", NOT_NEGATIVE, "Current for the integral of that error",
+           "from the inertia that a wheel turns"),
+    _drive("stall_time_s", NOT_NEGATIVE, "So long at the current limit without motion is a fault; 0: none"))
+"""Numbers of each drive at the motor's shaft, as laconic_drive_settings has them."""
+
+OWN = "vehicle.wheel[#]"
+KEYS: Mapping[str, Key] = {key.path: key for key in (
+    Key("name", TEXT, "Of the scene, in pictures and tables", None, "the file's name"),
+    Key("source", TEXT, "Where its numbers come from", ""),
+    Key(f"{OWN}.kind", TEXT, "What the wheel is", choices=WHEEL_KINDS),
+    Key(f"{OWN}.x_m", usual="or `distance_m` and `bearing_rad`"),
+    Key(f"{OWN}.y_m", usual="or `distance_m` and `bearing_rad`"),
+    Key(f"{OWN}.distance_m", A_NUMBER, "Of the wheel's centre from the body frame's origin", None,
+        "or `x_m` and `y_m`", range="0 or more"),
+    Key(f"{OWN}.bearing_rad", A_NUMBER, "Direction of the wheel's centre from the body frame's origin, from the ξ axis",
+        None, "or `x_m` and `y_m`"),
+    Key(f"{OWN}.roller_rad", usual="90° for `omni`; else must be given; not for `fixed`", range="not along the axle"),
+    Key(f"{OWN}.locked", usual="false"),
+    Key(f"{OWN}.driven", meaning="Whether the wheel has a motor", usual="true"),
+    Key(f"{OWN}.motor_circuit", TEXT, "What its motor is connected to", "driven", choices=MOTOR_CIRCUITS),
+    *(Key(f"{OWN}.{key}", rule=FRICTION if key == "friction_coefficient" else POSITIVE, usual=whose)
+      for key, whose in ABOVE_0.items()),
+    Key("vehicle.motor.resistance_ohm", meaning="Of the winding, R_a"),
+    Key("vehicle.motor.torque_constant_Nm_per_A", meaning="Torque of the shaft per ampere, k_t"),
+    Key("vehicle.motor.back_emf_Vs_per_rad", meaning="Voltage per speed of the shaft, k_e; in SI as large as k_t"),
+    Key("vehicle.motor.gear_ratio", meaning="Turns of the motor's shaft for one of the wheel, n; below 0: the shaft "
+                                            "turns against the wheel, so a voltage above 0 turns that backwards"),
+    Key("vehicle.motor.viscous_friction_Nms", meaning="Torque per speed of the shaft, d"),
+    Key("vehicle.motor.rotor_inertia_kgm2", meaning="Of the rotor; added, times n², to `wheel_inertia_kgm2`"),
+    Key("vehicle.drive.supply_V", rule=POSITIVE, usual="no limit"),
+    Key("vehicle.drive.current_limit_A", rule=POSITIVE, usual="no limit"),
+    Key("vehicle.friction_coefficient", rule=FRICTION, usual="a run in which slip is not judged"),
+    Key("ground.friction_coefficient", rule=POSITIVE, usual="ideal ground"),
+    Key("initial.nu_rad_per_s", usual="at rest; or velocity and yaw rate"),
+    Key("initial.velocity_body_m_per_s", "list of 2 numbers", "Of the centre of mass, in body axes", (0.0, 0.0)),
+    Key("initial.yaw_rate_rad_per_s", A_NUMBER, "How fast the body turns, to the left", 0.0),
+    Key("initial.wheel_speed_rad_per_s", usual="as the wheels roll"),
+    Key("input[#].signal", TEXT, "One of [the inputs](signals.md#inputs)"),
+    Key("input[#].kind", TEXT, "Its course over time", choices=INPUT_KINDS),
+    Key("input[#].t_s", A_LIST, "Instants; those of `steps` fall on steps of the run",
+        usual="must be given, of a `sine` not", range="ascending, from 0"),
+    Key("input[#].value", A_LIST, "At each instant, in the signal's unit", usual="must be given, of a `sine` not"),
+    Key("input[#].amplitude", A_NUMBER, "Of a `sine`, in the signal's unit", usual="must be given for a `sine`",
+        rule=SWINGS),
+    Key("input[#].frequency_Hz", A_NUMBER, "Of a `sine`; four steps a period at least",
+        usual="must be given for a `sine`", range="0 or more; above 0 where the phase is 0"),
+    Key("input[#].phase_rad", A_NUMBER, "Of a `sine`", 0.0),
+    Key("run.duration_s", A_NUMBER, "Length of the run, a whole number of steps", rule=POSITIVE),
+    Key("run.step_s", A_NUMBER, 'Internal step, or "auto" with `tolerance`: [found before the run]'
+        "(error-estimate.md#a-step-for-a-tolerance)", rule=POSITIVE),
+    Key("run.tolerance", A_NUMBER, 'For step_s = "auto": the largest estimated error that ν, place, heading and wheel '
+        "angles may have in the run, in rad/s, m and rad", None, "a step that is given", POSITIVE),
+    Key("run.method", TEXT, "See [which method](performance.md#which-method)", "auto"),
+    Key("run.real", TEXT, "Scalar type of the core", "double", choices=REALS),
+    Key("outputs.signals", "list of texts", "[Outputs](signals.md#outputs), with an index or without for all of them",
+        None, "the usual ones"),
+    Key("outputs.every_s", A_NUMBER, "Interval of the rows, a whole number of steps", None, "each step", POSITIVE),
+    Key("sensors.imu.delay_s", A_NUMBER, "How late it shows a sample: a whole number of steps, at most 64", 0.0,
+        rule=SECONDS),
+    Key("sensors.imu.seed", meaning="Of the noise; refused without noise", range="32 bits"),
+    Key("sensors.imu.acceleration_scale_error", "number, or list of 2"),
+    Key("sensors.imu.acceleration_bias_m_per_s2", "number, or list of 2"),
+    Key("sensors.imu.acceleration_range_m_per_s2", usual="no limit"),
+    Key("sensors.imu.yaw_rate_range_rad_per_s", usual="no limit"),
+    Key("sensors.encoder.counts_per_turn", "whole number, or list with one for each wheel, `false` for none",
+        "Counts of one turn of the encoder's shaft, all edges counted", usual="must be given", range="above 0"),
+    Key("sensors.encoder.gear_ratio", "number, or list with one for each encoder", usual="1", range="not 0"),
+    Key("sensors.encoder.wrap", meaning="How many values the counter has: 65536 shows 0 to 65535",
+        usual="32 bits with sign", range="2 to 2³¹ − 1, or 2³²"),
+    Key("speed_controller.gain_As_per_rad", A_NUMBER, "P of the motors' current P (set − s) + I ∫(set − s) dt, with "
+                                                      "speeds s of the wheels", rule=POSITIVE),
+    Key("speed_controller.integral_gain_A_per_rad", A_NUMBER, "I of it", 0.0, rule=NOT_NEGATIVE),
+    Key("speed_controller.dead_time_s", A_NUMBER, "From the set speed to the current", 0.0, rule=NOT_NEGATIVE),
+    Key("rig.id_base", "whole number", "First CAN identifier of the node", None, "the node's own", range="0 to 0x7FF"),
+    Key("rig.frames", "list of texts", "Frames of [the wire](wire.md) that the node sends", (), "the usual ones"),
+    Key("rig.drives.protocol", TEXT, "What the drives speak", None, "that of `--drives`", choices=PROTOCOLS),
+    Key("rig.drives.node_ids", "list of whole numbers", "One for each wheel, `false` for a wheel without a drive", None,
+        "counted up"),
+    *DRIVE_NUMBERS,
+    Key("rig.drives.watchdog_s", A_NUMBER, "Off after so long a silence; not with CANopen", None, "the protocol's",
+        SECONDS))}
+
+
+def key_of(table: Table, name: str) -> Key:
+    """The key of a table, by where the table stands."""
+    return KEYS[re.sub(r"\[\d+\]", "[#]", table.name(name))]
+
+
+def read_number(table: Table, name: str) -> Any:
+    """A finite number that its rule allows, or its default."""
+    key = key_of(table, name)
+    value = table.number(name, key.default)
+    if value is not None:
+        key.check(table, value)
+    return value
+
+
+def read_choice(table: Table, name: str, *, hints: Mapping[str, str] = NO_HINTS) -> str:
+    """One of the words that a key may be, or its default; hints as in laconic.scene.not_modelled."""
+    key = key_of(table, name)
+    return table.choice(name, tuple(key.choices or ()), key.default, hints=hints)

@@ -1,0 +1,113 @@
+"""Limit cycles by shooting, with their Floquet multipliers.
+
+The unknowns are the starting point and the period; the variational equation runs along, so Newton's method is exact
+and the multipliers come with it. One multiplier is 1 (along the motion); the others decide.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from laconic.tools.analyse.field import Field
+
+
+@dataclass(frozen=True)
+class LimitCycle:
+    """A closed orbit in ν."""
+
+    parameter: float
+    start_zeta: np.ndarray
+    path_nu: np.ndarray       # ν along one period
+    period_s: float
+    multipliers: np.ndarray
+    size: float               # largest distance in ν from the steady motion inside
+    residual: float           # how well it closes
+
+    @property
+    def stable(self) -> bool:
+        """All multipliers but the one along the motion inside the unit circle."""
+        along = int(np.argmin(np.abs(self.multipliers - 1.0)))
+        return bool(np.abs(np.delete(self.multipliers, along)).max(initial=0.0) < 1.0)
+
+
+def flow(field: Field, zeta: np.ndarray, duration_s: float, samples: int = 2,
+         tolerance: float = 1e-12) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """(times, ζ at the times, ∂ζ(end)/∂ζ(start)); None where the motion cannot be followed so far."""
+    m = field.dof
+
+    def rates(_: float, packed: np.ndarray) -> np.ndarray:
+        point, matrix = packed[:m], packed[m:].reshape(m, m)
+        return np.concatenate([field.rates(point), (field.jacobian(point) @ matrix).ravel()])
+
+    start = np.concatenate([zeta, np.eye(m).ravel()])
+    times = np.linspace(0.0, duration_s, samples)
+    run = solve_ivp(rates, (0.0, duration_s), start, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=times)
+    if not run.success or run.y.shape[1] < samples:
+        return None
+    return times, run.y[:m].T, run.y[m:, -1].reshape(m, m)
+
+
+def shoot(field: Field, guess: np.ndarray, period_s: float, centre: np.ndarray, parameter: float) -> LimitCycle | None:
+    """Newton on (ζ, T), held to the plane through the guess across the flow; None if it does not settle."""
+    zeta, anchor, normal = guess.copy(), guess.copy(), field.rates(guess)
+    scale, m, first_period = max(1.0, float(np.abs(centre).max())), field.dof, period_s
+    for _ in range(12):
+        result = flow(field, zeta, period_s, tolerance=1e-10)
+        if result is None:
+            return None
+        _, path, monodromy = result
+        residual = np.append(path[-1] - zeta, normal @ (zeta - anchor))
+        system = np.zeros((m + 1, m + 1))
+        system[:m, :m] = monodromy - np.eye(m)
+        system[:m, m] = field.rates(path[-1])
+        system[m, :m] = normal
+        step = np.linalg.lstsq(system, -residual, rcond=None)[0]
+        zeta, period_s = zeta + step[:m], period_s + step[m]
+        if not 0.3 < period_s / first_period < 3.0 or not np.isfinite(zeta).all():
+            return None
+        if np.abs(step[:m]).max() < 1e-8 * scale and abs(step[m]) < 1e-8 * period_s:
+            return _finished(field, zeta, period_s, centre, parameter)
+    return None
+
+
+def _finished(field: Field, zeta: np.ndarray, period_s: float, centre: np.ndarray,
+              parameter: float) -> LimitCycle | None:
+    result = flow(field, zeta, period_s, samples=200)
+    if result is None:
+        return None
+    _, path, monodromy = result
+    nu = field.nu(path)
+    distance = float(np.abs(nu - field.nu(centre)).max())
+    if distance < 1e-5 * max(1.0, float(np.abs(nu).max())):
+        return None  # fell back onto the steady motion itself
+    return LimitCycle(
+        parameter=parameter,
+        start_zeta=zeta,
+        path_nu=nu,
+        period_s=float(period_s),
+        multipliers=np.linalg.eigvals(monodromy),
+        size=distance,
+        residual=float(np.abs(path[-1] - zeta).max()),
+    )
+
+
+def cycle_near(field: Field, centre: np.ndarray, parameter: float, lyapunov: float) -> LimitCycle | None:
+    """The cycle around a steady motion near a Hopf point, from the amplitude that its normal form predicts.
+
+    z' = (α + iΩ) z + l1 Ω |z|² z has the cycle |z|² = −α/(l1 Ω), in the eigenvectors' plane.
+    """
+    values, vectors = np.linalg.eig(field.jacobian(centre))
+    k = int(np.argmax(values.imag))
+    if values[k].imag <= 0.0 or -values[k].real * lyapunov <= 0.0:
+        return None
+    amplitude = np.sqrt(-values[k].real / (lyapunov * values[k].imag))
+    direction = 2.0 * (vectors[:, k] / np.linalg.norm(vectors[:, k])).real
+    period_s = 2.0 * np.pi / values[k].imag
+    for factor in (1.0, 0.9, 1.1, 0.8):
+        cycle = shoot(field, centre + factor * amplitude * direction, period_s, centre, parameter)
+        if cycle is not None:
+            return cycle
+    return None
