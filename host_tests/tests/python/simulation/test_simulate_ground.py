@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from laconic.base.paths import SCENE_DIR, scene_names
 from laconic.cli.main import run
 from laconic.core.grip import Grip, GripEvent
 from laconic.fmu import make_fmu
-from laconic.paths import SCENE_DIR, scene_names
 from laconic.scene import read_scene
 from laconic.simulation import simulate
 from laconic.tools.demo.fmu_rows import fmu_rows
