@@ -10,7 +10,7 @@ from pathlib import Path
 from laconic_build.c.facts import facts, placeholders
 from laconic_build.release.collect import Made, collect
 from laconic_build.release.parts import Places
-from laconic_build.release.tree import NoRelease, tree_of
+from laconic_build.release.tree import NoRelease, check_tools, tree_of
 from laconic_fmu.licences import ziglang_in
 
 MEGABYTE = 1e6
@@ -20,6 +20,7 @@ def main() -> int:
     """Status 2 with one line where no release can be made."""
     given = parse()
     try:
+        check_tools(given.wasm_clang, given.cross)
         made = collect(tree_of(given.project), facts(), given.build, given.dist, places_of(given), compilers(given))
     except NoRelease as why:
         print(f"laconic: release: {why}", file=sys.stderr)

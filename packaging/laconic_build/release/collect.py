@@ -36,8 +36,7 @@ def collect(tree: Tree, facts: Facts, build: Path, dist: Path, places: Places, c
     shutil.rmtree(stage, ignore_errors=True)
     stage.mkdir(parents=True)
     wanted, known = products(tree, facts, build), parts(places)
-    for product in wanted:
-        write_product(product, stage)
+    write_products(wanted, stage)
     write_licences(wanted, known, facts, stage)
     rows = [*((product.name, product.text) for product in wanted), *of_the_folder(facts)]
     (stage / "README.md").write_text(readmes.of_release(facts, rows), encoding="utf-8")
@@ -57,14 +56,20 @@ def foreign(dist: Path) -> None:
                         "LACONIC_DIST")
 
 
-def write_product(product: Product, stage: Path) -> None:
-    """Writes one file and tells its size."""
-    try:
-        data = product.content()
-    except FileNotFoundError as why:
-        raise NoRelease(f"{product.name}: {why.filename} was not built; build the target laconic_release") from None
-    (stage / product.name).write_bytes(data)
-    print(f"{len(data) / 1e3:9.1f} kB  {product.name}", flush=True)
+def write_products(wanted: list[Product], stage: Path) -> None:
+    """Writes all files and prints their sizes; NoRelease names every one that was not built."""
+    lacking: dict[str, str] = {}
+    for product in wanted:
+        try:
+            data = product.content()
+        except FileNotFoundError as why:
+            lacking[product.name] = str(why.filename)
+            continue
+        (stage / product.name).write_bytes(data)
+        print(f"{len(data) / 1e3:9.1f} kB  {product.name}", flush=True)
+    if lacking:
+        each = ", ".join(f"{name}: {path}" for name, path in lacking.items())
+        raise NoRelease(f"{each} {'was' if len(lacking) == 1 else 'were'} not built; build the target laconic_release")
 
 
 def write_licences(wanted: list[Product], known: Mapping[str, Part], facts: Facts, stage: Path) -> None:

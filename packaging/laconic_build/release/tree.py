@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,17 @@ from laconic_build.wheel.archive import epoch
 
 class NoRelease(Exception):
     """Why no release can be made; one line."""
+
+
+def check_tools(wasm_clang: str, cross: Path) -> None:
+    """NoRelease that names all that is missing here, so that one installation brings it; `cross` is an environment."""
+    tools = {"git": shutil.which("git"), "a clang with WebAssembly": shutil.which(wasm_clang),
+             "its linker wasm-ld": shutil.which("wasm-ld") or shutil.which(str(Path(wasm_clang).with_name("wasm-ld"))),
+             "the compiler for other platforms (the build fetches ziglang)":
+                 next(cross.glob("lib/python3*/site-packages/ziglang"), None)}
+    if lacking := [name for name, found in tools.items() if found is None]:
+        raise NoRelease(f"this machine lacks {', '.join(lacking)}; install what is missing (Debian: apt install git "
+                        "clang lld) and build the target laconic_release again")
 
 
 @dataclass(frozen=True)

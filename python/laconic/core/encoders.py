@@ -128,7 +128,7 @@ def _whole(key: str, given: Any, what: str, fail: Fail, others: tuple[int, ...] 
         fail(key, f"is {str(given).lower() if isinstance(given, bool) else shown(given)}, not {what}")
     if not LEAST_INTEGER <= found <= MOST_INTEGER and found not in others:
         more = "".join(f", or {other}" for other in others)
-        fail(key, f"is {found}; give a whole number of at most 32 bits, {LEAST_INTEGER} to {MOST_INTEGER}{more}")
+        fail(key, f"is {shown(found)}; give a whole number of at most 32 bits, {LEAST_INTEGER} to {MOST_INTEGER}{more}")
     return int(found)
 
 

@@ -187,7 +187,7 @@ def test_a_run_that_raises_anything_leaves_the_node_at_rest(port: int, monkeypat
 
     at_step(monkeypatch, fail)
     assert run(["rig", "s1", *on(port), "--free-run", "--watchdog", "0"]) == 2
-    assert "a fault of our own" in capsys.readouterr().err
+    assert "unexpected fault of the program (test_rig_interrupted.py:" in capsys.readouterr().err
     assert state_of(port, capsys) == "ready"
 
 

@@ -21,7 +21,7 @@ from laconic_build.release.archives import File
 from laconic_build.release.collect import collect
 from laconic_build.release.parts import Places
 from laconic_build.release.products import products
-from laconic_build.release.tree import NoRelease, Tree, tree_of
+from laconic_build.release.tree import NoRelease, Tree, check_tools, tree_of
 from laconic_build.wheel import cross
 from laconic_build.wheel.contents import FMUS
 from laconic_build.wheel.platforms import PLATFORMS
@@ -189,6 +189,53 @@ def test_what_was_not_built_is_named_and_the_former_release_stays(released: Path
     with pytest.raises(NoRelease, match=r"laconic\.html: .* was not built; build the target laconic_release"):
         collect(tree, facts(), build, released, places, {})
     assert checksums.wrong_files(released) == []
+
+
+def test_all_that_was_not_built_is_named_at_once(released: Path, tree: Tree, build: Path, places: Places) -> None:
+    (build / "page" / "laconic.html").unlink()
+    (build / "fmu" / FMUS[0]).unlink()
+    with pytest.raises(NoRelease) as why:
+        collect(tree, facts(), build, released, places, {})
+    assert "laconic.html: " in str(why.value) and f"{FMUS[0]}: " in str(why.value)
+    assert str(why.value).endswith(" were not built; build the target laconic_release")
+    assert checksums.wrong_files(released) == []
+
+
+def test_all_tools_that_a_release_lacks_are_named_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here = tmp_path / "bin"
+    monkeypatch.setenv("PATH", str(here))
+    with pytest.raises(NoRelease) as why:
+        check_tools("clang", tmp_path)
+    assert str(why.value).startswith("this machine lacks git, a clang with WebAssembly, its linker wasm-ld, the compi"
+                                     "ler for other platforms (the build fetches ziglang); install what is missing")
+    for name in ("git", "clang", "wasm-ld"):
+        put(here / name, "")
+        (here / name).chmod(0o755)
+    with pytest.raises(NoRelease, match="lacks the compiler for other platforms .the build fetches ziglang.; install"):
+        check_tools("clang", tmp_path)
+    (tmp_path / "lib" / "python3.11" / "site-packages" / "ziglang").mkdir(parents=True)
+    check_tools("clang", tmp_path)
+
+
+@pytest.mark.skipif(shutil.which("cmake") is None, reason="no CMake")
+@pytest.mark.parametrize("there, lacking", [
+    ((), "git, clang, wasm-ld (in the package lld)"), (("git",), "clang, wasm-ld (in the package lld)"),
+    (("clang",), "git, wasm-ld (in the package lld)"), (("git", "clang"), "wasm-ld (in the package lld)")])
+def test_the_build_names_all_tools_that_a_release_lacks(tmp_path: Path, there: tuple[str, ...], lacking: str) -> None:
+    tools = {"LACONIC_GIT": "git", "LACONIC_WASM_CLANG": "clang", "LACONIC_WASM_LD": "wasm-ld"}
+    lines = [f'set({name} "{tool if tool in there else "NOTFOUND"}" CACHE FILEPATH "")' for name, tool in tools.items()]
+    put(tmp_path / "CMakeLists.txt", "\n".join([
+        "cmake_minimum_required(VERSION 3.25)", "project(release LANGUAGES NONE)", "set(LACONIC_FMU_ALL ON)",
+        "set(CMAKE_PROGRAM_PATH nowhere)", "set(CMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH OFF)",
+        "set(CMAKE_FIND_USE_CMAKE_SYSTEM_PATH OFF)", *lines,
+        f'add_subdirectory("{SOURCE_DIR / "packaging" / "release"}" release)']))
+    folder = tmp_path / "build"
+    told = subprocess.run(["cmake", "-S", str(tmp_path), "-B", str(folder)], capture_output=True, text=True,
+                          check=True)
+    assert f"no release: this machine lacks {lacking}\n" in told.stdout
+    done = subprocess.run(["cmake", "--build", str(folder), "--target", "laconic_release"], capture_output=True,
+                          text=True, check=False)
+    assert done.returncode != 0 and f"this machine lacks {lacking}: install what is missing" in done.stdout
 
 
 def test_changes_that_no_commit_holds_are_told(tree: Tree) -> None:

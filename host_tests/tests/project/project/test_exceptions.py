@@ -7,9 +7,9 @@ import importlib
 import inspect
 import multiprocessing
 import pickle
-import pkgutil
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -24,11 +24,13 @@ VALUES = {"str": "words", "int": 2, "float": 2.5}
 def kinds_of_errors() -> list[type[BaseException]]:
     """Every class of exceptions in a module of the package that can be imported here."""
     found: dict[str, type[BaseException]] = {}
-    for module in pkgutil.walk_packages(laconic.__path__, "laconic."):
-        if module.name.endswith("__main__"):
+    folder = Path(laconic.__path__[0])
+    for path in sorted(folder.rglob("*.py")):
+        name = ".".join(("laconic", *path.relative_to(folder).with_suffix("").parts)).removesuffix(".__init__")
+        if name.endswith("__main__"):
             continue
         try:
-            room = importlib.import_module(module.name)
+            room = importlib.import_module(name)
         except ImportError:  # an extra that is not installed
             continue
         for each in vars(room).values():

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from laconic.base.paths import SCENE_DIR, scene_names
 from laconic.cli.main import run
 from laconic.core.grip import Grip, GripEvent
 from laconic.fmu import make_fmu
@@ -168,3 +169,20 @@ def test_wheels_that_roll_on_ground_with_friction_have_not_slipped(
     assert found["final"]["x_m"] > 0.01 and found["no_slip"]["slip_loss_J"] != 0.0  # rounding
     assert run(["simulate", str(scene)]) == 0
     assert "no wheel slipped\n" in capsys.readouterr().out
+
+
+ON_PURPOSE = "example_two_wheel_sizes"
+
+
+@pytest.mark.parametrize("name", [name for name in scene_names() if name != ON_PURPOSE])
+def test_the_ground_gives_what_a_scene_of_the_project_needs(name: str) -> None:
+    found = simulate(read_scene(name))
+    assert found.grip is None or found.grip.warning() == ""
+
+
+def test_one_scene_keeps_the_warning_and_says_that_it_does_so_on_purpose(capsys: pytest.CaptureFixture[str]) -> None:
+    scene = read_scene(ON_PURPOSE)
+    assert "On purpose" in scene.path.read_text(encoding="utf-8")
+    assert run(["simulate", ON_PURPOSE]) == 0
+    assert "the ground cannot give what this run needs: wheel 2 slips at 0 s" in capsys.readouterr().err
+    assert f"`{ON_PURPOSE}` does so on purpose" in (SCENE_DIR.parent / "docs" / "scenes.md").read_text(encoding="utf-8")

@@ -138,7 +138,7 @@ def test_a_new_page_takes_away_the_older_pages_pictures_and_nothing_else(capsys,
 
 
 def test_the_worst_use_of_the_friction_cone_is_told_with_its_wheel_and_instant() -> None:
-    study = analyse(read_scene("robotino2"), ["traction"])
+    study = analyse(read_scene("example_two_wheel_sizes"), ["traction"])
     traction = study.traction
     assert traction is not None and traction.first_slip_s is not None
     instant, wheel = np.unravel_index(np.nanargmax(traction.use), traction.use.shape)

@@ -32,7 +32,7 @@ def solved(tables, free, goals, constraints=(), effort=FEW):
 def test_voltages_that_lead_to_a_place_are_found_again():
     """The place is the end of a run with known voltages; its distance is 0 there alone, and exact gradients lead in."""
     tables = coarse("robotino2")
-    known = {"input[1].value[1]": -4.0, "input[2].value[1]": 1.5}
+    known = {"input[1].value[5]": -4.0, "input[2].value[5]": 1.5}
     end = simulate(tables.with_values(known).scene(), ["x_m", "y_m"]).columns
     x, y = float(end["x_m"][-1]), float(end["y_m"][-1])
     found = solved(tables, [f"{key}=-6:6" for key in known], [f"min:end_distance_m(x_m={x!r}, y_m={y!r})"])
@@ -46,7 +46,7 @@ def test_place_within_a_circle_that_is_farthest_along_x_is_its_rightmost_point()
     tables = coarse("robotino2")
     own = simulate(tables.scene(), ["x_m", "y_m"]).columns
     x, y = float(own["x_m"][-1]), float(own["y_m"][-1])
-    found = solved(tables, ["input[1].value[1]=-6:6", "input[2].value[1]=-3:3"], ["max:end_x_m"],
+    found = solved(tables, ["input[1].value[5]=-6:6", "input[2].value[5]=-3:3"], ["max:end_x_m"],
                    [f"end_distance_m(x_m={x!r}, y_m={y!r})<=0.2"])
     assert found.best.values == pytest.approx([x + 0.2, 0.2], rel=1e-6)
     assert len(found.active_constraints) == 1 and not found.at_ends
