@@ -131,8 +131,8 @@ def test_constants_in_single_precision_are_refused_in_double_and_change_no_bit_i
                               capture_output=True, check=False)
         assert done.returncode != 0
         assert "needs_compiling_without_fsingle_precision_constant" in done.stderr
-    run("gcc", "-O1", "-fsingle-precision-constant", "-DLACONIC_SINGLE", *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c",
-        "-o", "hash", folder=pair)
+    run("gcc", "-O1", "-fsingle-precision-constant", "-DLACONIC_SINGLE", *STRICT, "-I.", TRAJECTORY,
+        "laconic/laconic.c", "-o", "hash", folder=pair)
     assert run("./hash", folder=pair).split() == BITS["single"]
     run("gcc", "-fsingle-precision-constant", *STRICT, "-fsyntax-only", "laconic/laconic_single.c", folder=pair)
 

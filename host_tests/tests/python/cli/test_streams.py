@@ -34,7 +34,8 @@ benchmark.command.callback = lambda **_: [Console().print(line) for line in rang
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("command, before", [("simulate s1", ""), ("simulate s1 --out -", ""), ("benchmark step", RICH)])
+@pytest.mark.parametrize("command, before", [("simulate s1", ""), ("simulate s1 --out -", ""),
+                                             ("benchmark step", RICH)])
 def test_a_full_stdout_is_one_line(command, before):
     with Path("/dev/full").open("w") as full:
         done = started(main_with(command, before), stdout=full)

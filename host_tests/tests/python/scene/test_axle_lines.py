@@ -7,12 +7,12 @@ import math
 from pathlib import Path
 
 import pytest
-from scene_text import table, wheel
 
 from laconic.cli.main import run
 from laconic.errors import Refused
 from laconic.scene import Scene, read_scene
 from laconic.scene.axle_lines import Line, common_line, grouped, line_of, nearly_one_line
+from scene_text import table, wheel
 
 HEAD = table("[vehicle]", mass_kg=10.0, yaw_inertia_kgm2=0.4, wheel_radius_m=0.1, wheel_inertia_kgm2=0.01)
 RUN = table("[run]", duration_s=0.1, step_s=0.01)

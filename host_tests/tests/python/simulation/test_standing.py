@@ -6,13 +6,13 @@ import json
 from pathlib import Path
 
 import pytest
-from scene_text import table, wheel
 
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.scene import read_scene
 from laconic.scene.standing import standing_of
 from laconic.simulation import simulate
+from scene_text import table, wheel
 
 G = 9.80665
 BODY = {"mass_kg": 10.0, "yaw_inertia_kgm2": 0.4, "wheel_radius_m": 0.1, "wheel_inertia_kgm2": 0.01, "com_z_m": 0.2}

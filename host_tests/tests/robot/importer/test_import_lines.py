@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from made_up_robots import BOX, FOUR_WHEELS, inertial, link, robot, wheel
 
 from laconic.errors import BadInput
 from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.scene import Scene, read_scene
+from made_up_robots import BOX, FOUR_WHEELS, inertial, link, robot, wheel
 
 BODY = link("base", inertial(5.0, (0.1, 0.1, 0.08)), BOX)
 TOLD = "are brought onto it: "

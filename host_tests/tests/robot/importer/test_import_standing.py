@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from made_up_robots import BOX, FOUR_WHEELS, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 from laconic.cli.main import run
 from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.scene import Scene, read_scene
 from laconic.simulation import simulate
+from made_up_robots import BOX, FOUR_WHEELS, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 ROUND = ('<collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.05" length="0.02"/></geometry>'
          "</collision>")

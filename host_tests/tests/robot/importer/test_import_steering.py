@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from made_up_robots import BOX, MJCF, SDF, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 from laconic.errors import BadInput
 from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.scene import Scene, read_scene
 from laconic.simulation import simulate
+from made_up_robots import BOX, MJCF, SDF, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 POSITION = '<joint name="{0}"><command_interface name="position"/></joint>'
 VELOCITY = '<joint name="{0}"><command_interface name="velocity"/></joint>'

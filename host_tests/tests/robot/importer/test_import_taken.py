@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from made_up_robots import FOUR_WHEELS, MJCF, SDF, THREE_AROUND, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.scene import Scene, read_scene
 from laconic.simulation import simulate
+from made_up_robots import FOUR_WHEELS, MJCF, SDF, THREE_AROUND, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 
 def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from made_up_robots import BOX, MJCF, SDF, THREE_AROUND, TWO_WHEELS, WHEEL, inertial, joint, link, robot, wheel
 
 from laconic.errors import BadInput
 from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.robot.importer.robot_tree import MOST_LINKS
 from laconic.scene import Scene, read_scene
+from made_up_robots import BOX, MJCF, SDF, THREE_AROUND, TWO_WHEELS, WHEEL, inertial, joint, link, robot, wheel
 
 CYLINDER = '<geometry><cylinder radius="0.05" length="0.02"/></geometry>'
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

@@ -1,4 +1,4 @@
-"""Vehicles on ground with friction that nothing drives; host_tests/assurance/long/friction.py does the same for longer."""
+"""Vehicles on ground with friction that nothing drives; assurance/long/friction.py does the same for longer."""
 
 from __future__ import annotations
 
