@@ -23,7 +23,7 @@ GROUPS = {
                "play-odrive", "play-robomaster", "play-moteus", "logs", "sweep", "page", "release"),
     "Explanation": ("performance", "soft-double", "batch", "learn", "derivatives", "control", "optimise",
                     "assurance", "enclosures", "error-estimate", "integrators", "friction", "sensors",
-                    "real-robots", "paper", "architecture", "glossary"),
+                    "real-robots", "paper", "architecture", "manual", "glossary"),
     "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
                   "reference-fmi", "wire", "changelog"),
 }

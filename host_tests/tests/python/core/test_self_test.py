@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 CORE = Path(__file__).parents[4] / "core_c"
-SOURCES = [CORE / "src/self_test.c", CORE / "tests/self_test_under.c"]
+SOURCES = [CORE / "src/common/self_test.c", CORE / "tests/common/self_test_under.c"]
+FOLDERS = [f"-I{path}" for path in sorted((CORE / "src").iterdir())]
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 SOUND = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-tree-slp-vectorize"]
 SILENCED = {  # as a compiler that defines no macro: the options of the refusals below
@@ -30,7 +31,7 @@ def processor_has(flag: str) -> bool:
 
 def compiled(compiler: str, options: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     """The messages of the compiler about the self-test with its driver."""
-    return subprocess.run([compiler, "-w", "-I", str(CORE / "include"), *options, *map(str, SOURCES), "-lm",
+    return subprocess.run([compiler, "-w", "-I", str(CORE / "include"), *FOLDERS, *options, *map(str, SOURCES), "-lm",
                            "-o", str(folder / "self_test")], capture_output=True, text=True, check=False)
 
 
@@ -72,7 +73,8 @@ def test_every_mode_that_spoils_arithmetic_is_found(compiler, mode, tmp_path):
 @pytest.mark.skipif("gcc" not in COMPILERS or not processor_has("avx2"), reason="needs gcc and a processor with FMA")
 def test_what_a_vectoriser_fuses_against_its_orders_is_found_where_it_does(tmp_path):
     eager = ["-std=c99", "-O2", "-ffp-contract=off", "-march=x86-64-v3"]
-    made = ["gcc", *eager, "-I", str(CORE / "include"), "-S", "-o", "-", str(CORE / "src/geometry.c")]
+    made = ["gcc", *eager, "-I", str(CORE / "include"), *FOLDERS, "-S", "-o", "-",
+            str(CORE / "src/vehicle/geometry.c")]
     listing = subprocess.run(made, capture_output=True, text=True, check=True).stdout
     assert ("are fused" in found("gcc", eager, tmp_path)) == ("vfm" in listing)
     assert found("gcc", [*eager, "-fno-tree-slp-vectorize"], tmp_path) == "0 sound"

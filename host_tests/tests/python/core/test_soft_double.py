@@ -26,7 +26,7 @@ needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
 def test_this_machine_computes_the_answers_that_check_double_knows(tmp_path: Path):
     program = tmp_path / "check"
     run_tool(["gcc", "-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror", "-O2",
-              str(CORE / "soft_double" / "check_double.c"), "-o", str(program)])
+              str(CORE / "optional" / "soft_double" / "check_double.c"), "-o", str(program)])
     assert run_tool([str(program)]) == "double: sound\n"
 
 
@@ -64,7 +64,7 @@ def test_every_function_of_libgccs_object_with_the_adder_is_ours(tmp_path: Path)
     theirs = next(text for text in objects if " T __aeabi_dadd" in text)
     names = [line.split()[2] for line in theirs.splitlines() if " T " in line]
     soft = tmp_path / "soft_double.o"
-    run_tool([M4F.tool("gcc"), *M4F.flags, "-O2", "-c", str(CORE / "soft_double/soft_double.c"), "-o", str(soft)])
+    run_tool([M4F.tool("gcc"), *M4F.flags, "-O2", "-c", str(CORE / "optional/soft_double/soft_double.c"), "-o", str(soft)])
     ours = [line.split()[2] for line in run_tool([M4F.tool("nm"), "--defined-only", str(soft)]).splitlines()]
     assert set(names) <= set(ours)
 
@@ -82,4 +82,4 @@ def test_cmake_puts_it_into_the_core_where_the_processor_needs_it(processor: str
 def test_laconic_core_gives_it_out_beside_the_two_files(tmp_path: Path):
     assert run(["core", "--soft-double", "-o", str(tmp_path)]) == 0
     for name in ("soft_double.h", "soft_double.c", "check_double.c"):
-        assert (tmp_path / name).read_bytes() == (CORE / "soft_double" / name).read_bytes()
+        assert (tmp_path / name).read_bytes() == (CORE / "optional" / "soft_double" / name).read_bytes()
