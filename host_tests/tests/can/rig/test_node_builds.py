@@ -30,7 +30,8 @@ def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
 
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("definitions", [
-    (), ("LACONIC_MAX_WHEELS=24", "LACONIC_NODE_WITH_SENSORS=0"), ("LACONIC_NODE_WITH_DRIVES=0", "LACONIC_WITH_AXLE_TORQUE=0"),
+    (), ("LACONIC_MAX_WHEELS=24", "LACONIC_NODE_WITH_SENSORS=0"),
+    ("LACONIC_NODE_WITH_DRIVES=0", "LACONIC_WITH_AXLE_TORQUE=0"),
     ("LACONIC_NODE_WITH_SENSORS=0",), ("LACONIC_NODE_WITH_ESTIMATE=1",),
     ("LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_ESTIMATE=1", "LACONIC_NODE_WITH_DRIVES=0"),
     ("LACONIC_SINGLE", "LACONIC_NODE_CAN_FD=0", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=1")], ids=" ".join)

@@ -64,7 +64,8 @@ def test_every_function_of_libgccs_object_with_the_adder_is_ours(tmp_path: Path)
     theirs = next(text for text in objects if " T __aeabi_dadd" in text)
     names = [line.split()[2] for line in theirs.splitlines() if " T " in line]
     soft = tmp_path / "soft_double.o"
-    run_tool([M4F.tool("gcc"), *M4F.flags, "-O2", "-c", str(CORE / "optional/soft_double/soft_double.c"), "-o", str(soft)])
+    source = CORE / "optional/soft_double/soft_double.c"
+    run_tool([M4F.tool("gcc"), *M4F.flags, "-O2", "-c", str(source), "-o", str(soft)])
     ours = [line.split()[2] for line in run_tool([M4F.tool("nm"), "--defined-only", str(soft)]).splitlines()]
     assert set(names) <= set(ours)
 
