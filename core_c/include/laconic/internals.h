@@ -41,10 +41,8 @@ typedef struct laconic_forcing_samples {
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 /* The values of laconic_integrator.chosen for laconic_auto; they cannot be prepared by themselves. */
-extern const struct laconic_method
-    laconic_auto_slow; /* where damping is slow beside the step: auto.c */
-extern const struct laconic_method
-    laconic_auto_fast; /* where it is fast */
+extern const struct laconic_method laconic_auto_slow; /* where damping is slow beside the step: auto.c */
+extern const struct laconic_method laconic_auto_fast; /* where it is fast */
 #endif
 
 #ifdef __cplusplus

@@ -58,8 +58,7 @@
 
 /* The numbers of the methods that this build has. */
 typedef enum laconic_method_number {
-    LACONIC_METHODS(LACONIC_METHOD_NUMBER)
-    LACONIC_METHOD_COUNT /* one more than the largest */
+    LACONIC_METHODS(LACONIC_METHOD_NUMBER) LACONIC_METHOD_COUNT /* one more than the largest */
 } laconic_method_number;
 
 #endif

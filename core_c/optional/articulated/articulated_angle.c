@@ -12,9 +12,9 @@ static real small_arcsine(real e) {
 }
 
 real laconic_articulated_angle_of(direction d) {
-    const real x = magnitude(d.cosine), y = magnitude(d.sine), large = x > y ? x : y, small = x > y ? y : x;
-    if (!(large > R(0)) || !is_finite(large)) return R(0);
-    const real t = small / large, inverse = R(1) / laconic_root(R(1) + t * t);
+    const real x = magnitude(d.cosine), y = magnitude(d.sine), larger = x > y ? x : y, smaller = x > y ? y : x;
+    if (!(larger > R(0)) || !is_finite(larger)) return R(0);
+    const real t = smaller / larger, inverse = R(1) / laconic_root(R(1) + t * t);
     const real steep = t * (R(0.78539816339744830962) + R(0.273) * (R(1) - t));
     const direction rough = direction_near(steep < R(0.78) ? steep : R(0.78), 0);
     real angle = (steep < R(0.78) ? steep : R(0.78)) + small_arcsine((t * rough.cosine - rough.sine) * inverse);

@@ -2,8 +2,8 @@
 #ifndef LACONIC_FACTORS_H
 #define LACONIC_FACTORS_H
 
-#include "step_chain.h"
 #include "laconic/filter.h"
+#include "step_chain.h"
 
 #define ERRORS LACONIC_FILTER_ERRORS
 #define COLUMNS (LACONIC_FILTER_ERRORS + LACONIC_FILTER_NOISES)

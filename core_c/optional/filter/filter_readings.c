@@ -1,7 +1,7 @@
 /* Readings of a filter: encoders, gyro, fixes of the pose. Numbers of one reading are taken one after the other, which
  * gives what all at once would, since their errors are independent; the estimate moves at the end. */
-#include "heading.h"
 #include "factors.h"
+#include "heading.h"
 
 /* A reading that is being taken: what the estimate is to be corrected by, so far. */
 typedef struct correction {

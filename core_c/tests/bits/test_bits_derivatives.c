@@ -3,6 +3,7 @@
  * each number of its vehicle. Items of wheels that a vehicle has not stay as they were. test_step_derivatives.c and
  * host_tests/tests/derivatives compare them with differences. */
 #include "gauss_weight_change.h"
+
 #include "bits.h"
 #include "laconic/derivatives.h"
 #include "stack.h"

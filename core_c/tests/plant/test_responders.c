@@ -1,8 +1,8 @@
 /* Tests of what answers directions through a step of each method: it reads no number that it has not set. What the
  * answers are, test_step_derivatives.c compares with differences. */
-#include "step_chain.h"
 #include "derived.h"
 #include "stack.h"
+#include "step_chain.h"
 
 /* A step, with and without a part of b that rotates, and two directions: one changes the model, too. */
 typedef struct question {
@@ -56,16 +56,16 @@ static answers answered_over(const question *q, uint8_t byte) {
 
 static void what_lay_on_the_stack_changes_no_answer(void) {
     static const double step_s[3] = {0.01, 0.2, 0.8};
-    FOR_EACH_DERIVED (number)
-        for (int k = 0; k < 6; k++) {
-            question q;
-            const char *const name = laconic_method_by_number(number)->name;
-            ask(&q, laconic_method_by_number(number), step_s[k / 2], k % 2 == 0);
-            const answers clean = answered_over(&q, 0), spoilt = answered_over(&q, ALL_NAN);
-            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&clean.step, &spoilt.step, sizeof clean.step, name);
-            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(clean.by, spoilt.by, sizeof clean.by, name);
-            TEST_ASSERT_TRUE(lane_number(spoilt.by[1].along_m, 0) == lane_number(spoilt.by[1].along_m, 0));
-        }
+    FOR_EACH_DERIVED(number)
+    for (int k = 0; k < 6; k++) {
+        question q;
+        const char *const name = laconic_method_by_number(number)->name;
+        ask(&q, laconic_method_by_number(number), step_s[k / 2], k % 2 == 0);
+        const answers clean = answered_over(&q, 0), spoilt = answered_over(&q, ALL_NAN);
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&clean.step, &spoilt.step, sizeof clean.step, name);
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(clean.by, spoilt.by, sizeof clean.by, name);
+        TEST_ASSERT_TRUE(lane_number(spoilt.by[1].along_m, 0) == lane_number(spoilt.by[1].along_m, 0));
+    }
 }
 
 /* Whether the columns are found without a number written to what the caller has on its stack, here `above`. */
@@ -95,28 +95,28 @@ static void columns_are_found_in_a_room_of_their_own(void) {
 /* With a change of the model or without, first or second. */
 static void a_direction_beside_another_is_answered_as_alone(void) {
     static const double step_s[2] = {0.01, 0.8};
-    FOR_EACH_DERIVED (number)
-        for (int k = 0; k < 8; k++) {
-            const char *const name = laconic_method_by_number(number)->name;
-            question q;
-            answers both;
-            ask(&q, laconic_method_by_number(number), step_s[k / 4], k % 2 == 0);
-            q.in[1].zeta = lanes_of(vector_of(REAL(-0.4), REAL(0.5), REAL(0.2)));
-            if (k / 2 % 2 == 1) {
-                const step_direction first = q.in[0];
-                q.in[0] = q.in[1];
-                q.in[1] = first;
-            }
-            memset(&both, 0, sizeof both);
-            q.step.responds(&both.step, both.by, &q.step.at, q.in, 2);
-            for (int i = 0; i < 2; i++) {
-                answers alone;
-                memset(&alone, 0, sizeof alone);
-                q.step.responds(&alone.step, alone.by, &q.step.at, &q.in[i], 1);
-                TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&both.by[i], &alone.by[0], sizeof alone.by[0], name);
-                TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&both.step, &alone.step, sizeof alone.step, name);
-            }
+    FOR_EACH_DERIVED(number)
+    for (int k = 0; k < 8; k++) {
+        const char *const name = laconic_method_by_number(number)->name;
+        question q;
+        answers both;
+        ask(&q, laconic_method_by_number(number), step_s[k / 4], k % 2 == 0);
+        q.in[1].zeta = lanes_of(vector_of(REAL(-0.4), REAL(0.5), REAL(0.2)));
+        if (k / 2 % 2 == 1) {
+            const step_direction first = q.in[0];
+            q.in[0] = q.in[1];
+            q.in[1] = first;
         }
+        memset(&both, 0, sizeof both);
+        q.step.responds(&both.step, both.by, &q.step.at, q.in, 2);
+        for (int i = 0; i < 2; i++) {
+            answers alone;
+            memset(&alone, 0, sizeof alone);
+            q.step.responds(&alone.step, alone.by, &q.step.at, &q.in[i], 1);
+            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&both.by[i], &alone.by[0], sizeof alone.by[0], name);
+            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&both.step, &alone.step, sizeof alone.step, name);
+        }
+    }
 }
 
 int main(void) {

@@ -6,7 +6,7 @@ import math
 import subprocess
 from typing import Any
 
-from laconic.paths import built
+from laconic.base.paths import built
 
 Case = dict[str, Any]
 KINDS = {"free": 1, "motor": 2, "prescribed": 3, "coordinated": 4}

@@ -43,7 +43,7 @@ static laconic_state_change some_change(void) {
 static void a_gradient_by_the_input_needs_none_by_the_model(void) {
     const laconic_input held = without_world_force();
     const laconic_state_change after = some_change();
-    FOR_EACH_DERIVED (number) {
+    FOR_EACH_DERIVED(number) {
         const robot r = robot_by(laconic_method_by_number(number), with_wheels(4));
         laconic_state_change before, alone;
         laconic_input input, input_alone;
@@ -66,26 +66,26 @@ static void a_gradient_by_the_input_needs_none_by_the_model(void) {
 static void a_slope_changes_a_step_as_a_force_at_the_centre_of_mass_does(void) {
     const laconic_input held = no_input();
     const laconic_state_change none = {{0}, 0, 0, 0, {0}};
-    FOR_EACH_DERIVED (number)
-        for (int k = 0; k < 2; k++) {
-            const robot r = robot_by(laconic_method_by_number(number), with_wheels(4));
-            laconic_state_change by_slope = none, by_force = none;
-            laconic_input force = no_input();
-            struct {
-                laconic_model_change slope;
-                laconic_real behind; /* is no part of it */
-            } by;
-            memset(&by, 0, sizeof by);
-            by.slope.slope_force_N[k] = force.world_force_N[k] = REAL(1);
-            ASSERT_STATUS(LACONIC_OK, laconic_step_tangent(&by_slope, &r.model, &r.integrator, &r.state, &held, &none,
-                                                           NULL, &by.slope));
-            ASSERT_STATUS(LACONIC_OK, laconic_step_tangent(&by_force, &r.model, &r.integrator, &r.state, &held, &none,
-                                                           &force, NULL));
-            ASSERT_NEAR_ALL(CLOSE * fabs((double)by_force.x_m), &by_force.x_m, &by_slope.x_m, 2);
-            ASSERT_NEAR_ALL(CLOSE, by_force.nu_rad_per_s, by_slope.nu_rad_per_s, 3);
-            ASSERT_NEAR_ALL(CLOSE, by_force.wheel_angle_rad, by_slope.wheel_angle_rad, 4);
-            TEST_ASSERT_TRUE((k == 0 ? by_slope.x_m : by_slope.y_m) > 0);
-        }
+    FOR_EACH_DERIVED(number)
+    for (int k = 0; k < 2; k++) {
+        const robot r = robot_by(laconic_method_by_number(number), with_wheels(4));
+        laconic_state_change by_slope = none, by_force = none;
+        laconic_input force = no_input();
+        struct {
+            laconic_model_change slope;
+            laconic_real behind; /* is no part of it */
+        } by;
+        memset(&by, 0, sizeof by);
+        by.slope.slope_force_N[k] = force.world_force_N[k] = REAL(1);
+        ASSERT_STATUS(LACONIC_OK, laconic_step_tangent(&by_slope, &r.model, &r.integrator, &r.state, &held, &none, NULL,
+                                                       &by.slope));
+        ASSERT_STATUS(LACONIC_OK,
+                      laconic_step_tangent(&by_force, &r.model, &r.integrator, &r.state, &held, &none, &force, NULL));
+        ASSERT_NEAR_ALL(CLOSE * fabs((double)by_force.x_m), &by_force.x_m, &by_slope.x_m, 2);
+        ASSERT_NEAR_ALL(CLOSE, by_force.nu_rad_per_s, by_slope.nu_rad_per_s, 3);
+        ASSERT_NEAR_ALL(CLOSE, by_force.wheel_angle_rad, by_slope.wheel_angle_rad, 4);
+        TEST_ASSERT_TRUE((k == 0 ? by_slope.x_m : by_slope.y_m) > 0);
+    }
 }
 
 /* A velocity beyond the range, which all that auto tries in turn refuse. */

@@ -37,6 +37,7 @@ CALLED = """min max abs round constrain radians degrees sq bit bitRead bitSet bi
     POSITION_VAL TEXT OF RGB UNUSED KB MB GB move erase clear refresh timeout getch border box scroll cli sei sbi
     cbi""".split()
 CORE, NODE = SOURCE_DIR / "core_c", SOURCE_DIR / "firmware_stub"
+FOLDERS = [CORE / "include", *(path for path in (CORE / "src").iterdir() if path.is_dir())]
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 
 pytestmark = pytest.mark.skipif(not COMPILERS, reason="neither gcc nor clang")
@@ -67,14 +68,13 @@ def test_the_two_files_compile_behind_every_platforms_macros(macros):
     compiled(macros, [built("amalgamation")], [built("amalgamation/laconic_single.c")])
 
 
-@pytest.mark.parametrize("part", ["batch", "derivatives", "estimate", "filter", "soft_double"])
+@pytest.mark.parametrize("part", ["articulated", "batch", "derivatives", "estimate", "filter", "soft_double"])
 def test_each_optional_part_of_the_core_does(part, macros):
-    files = [path for path in sorted((CORE / part).glob("*.c")) if path.name != "check_double.c"]
-    compiled(macros, [CORE / "include", CORE / "src"], files)
+    files = [path for path in sorted((CORE / "optional" / part).glob("*.c")) if path.name != "check_double.c"]
+    compiled(macros, [*FOLDERS, CORE / "optional" / "derivatives"], files)
 
 
 def test_the_node_its_drives_and_the_gate_do(macros):
-    folders = [CORE / "include", CORE / "src", NODE / "include", NODE / "src", NODE / "drives"]
-    files = [path for part in ("src", "secure", "drives") for path in (NODE / part).glob("**/*.c")
-             if path.name not in ("shared_library.c", "library_drives.c")]
+    folders = [*FOLDERS, NODE / "include", NODE / "node", NODE / "drives"]
+    files = [path for part in ("node", "wire", "secure", "drives") for path in (NODE / part).glob("**/*.c")]
     compiled(macros, [*folders, built("firmware_stub/wire")], sorted(files), "-DLACONIC_NODE_WITH_ESTIMATE=1")

@@ -29,19 +29,19 @@ def written(folder: Path, *parts: str, **vehicle: float) -> Path:
 
 def test_loads_are_outputs_and_balance_weight_and_push(tmp_path: Path) -> None:
     push = table("[[input]]", signal="body_force_N[1]", kind="steps", t_s=[0.0], value=[10.0])
-    outputs = table("[outputs]", signals=["normal_load_N", "support_load_N", "acceleration_body_m_per_s2[1]"])
+    outputs = table("[outputs]", signals=["wheel_load_N", "support_load_N", "acceleration_body_m_per_s2[1]"])
     found = simulate(read_scene(written(tmp_path, BALL, push, outputs, com_x_m=-0.1))).columns
-    assert list(found)[:3] == ["normal_load_N[1]", "normal_load_N[2]", "support_load_N[1]"]
+    assert list(found)[:3] == ["wheel_load_N[1]", "wheel_load_N[2]", "support_load_N[1]"]
     ahead = found["acceleration_body_m_per_s2[1]"][0]
     inertia_N = 2.0 * 0.01 * ahead / 0.1**2  # of the turning wheels, which the ground gives
     on_ball = 10.0 * G / 3.0 - inertia_N * 0.2 / 0.3
     assert found["support_load_N[1]"][0] == pytest.approx(on_ball, rel=1e-9)
-    assert found["normal_load_N[1]"][0] == pytest.approx((10.0 * G - on_ball) / 2.0, rel=1e-9)
+    assert found["wheel_load_N[1]"][0] == pytest.approx((10.0 * G - on_ball) / 2.0, rel=1e-9)
 
 
 def test_loads_of_supports_need_supports(tmp_path: Path) -> None:
     outputs = table("[outputs]", signals=["support_load_N"])
-    with pytest.raises(BadInput, match="support_load_N is of supports, of which the scene has none"):
+    with pytest.raises(BadInput, match="support_load_N is a support's, and the scene has none"):
         read_scene(written(tmp_path, outputs))
 
 

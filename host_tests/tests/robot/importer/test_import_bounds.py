@@ -188,14 +188,14 @@ def test_a_mesh_outside_of_the_robots_folder_is_not_opened(tmp_path: Path, uri: 
     monkeypatch.setattr(MeshFiles, "_points_of", lambda *_: pytest.fail("it was opened"))
     with MeshFiles(kit / "robot.urdf") as files:
         assert files.points(uri.format(tmp_path)) is None
-    assert list(files.missing.values()) == ["lies outside of the robot's folder; copy it there, or --package "
-                                            "NAME=FOLDER"]
+    assert list(files.missing.values()) == ["lies outside the robot's folder and is not opened; --package "
+                                            "NAME=FOLDER says where it may lie"]
 
 
 @pytest.mark.parametrize("robot, uri", [
     ("robot.urdf", "meshes/wheel.obj"), ("urdf/robot.urdf", "../meshes/wheel.obj"),
     ("robots/a/b/robot.urdf", "../../../meshes/wheel.obj"), ("urdf/robot.urdf", "package://kit/meshes/wheel.obj"),
-    ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"), ("urdf/robot.urdf", "package://other/wheel.obj"),
+    ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"),
     ("urdf/robot.urdf", "package://given/wheel.obj"), ("urdf/robot.urdf", "file://{}/../elsewhere/wheel.obj")])
 def test_a_mesh_of_the_robot_its_kit_or_a_package_is_read(tmp_path: Path, robot: str, uri: str) -> None:
     kit = tmp_path / "kit"
@@ -206,14 +206,6 @@ def test_a_mesh_of_the_robot_its_kit_or_a_package_is_read(tmp_path: Path, robot:
     with MeshFiles(kit / robot, {"given": tmp_path / "elsewhere"}) as files:
         found = files.points(uri.format(kit))
     assert found is not None and found.shape == (3, 3) and not files.missing
-
-
-def test_a_mesh_by_a_link_in_the_robots_folder_is_read(tmp_path: Path) -> None:
-    (tmp_path / "kit").mkdir()
-    (tmp_path / "wheel.obj").write_text(TRIANGLE, encoding="utf-8")
-    (tmp_path / "kit" / "linked.obj").symlink_to(tmp_path / "wheel.obj")
-    with MeshFiles(tmp_path / "kit" / "robot.urdf") as files:
-        assert files.points("linked.obj") is not None
 
 
 def chain(form: str, count: int) -> str:
@@ -228,9 +220,9 @@ def chain(form: str, count: int) -> str:
     return f'<sdf version="1.8"><model name="chain">{links}</model></sdf>'
 
 
-@pytest.mark.parametrize("form, what", [("robot.urdf", "links"), ("robot.sdf", "links"), ("robot.xml", "bodies")])
+@pytest.mark.parametrize("form", ["robot.urdf", "robot.sdf", "robot.xml"])
 def test_a_chain_of_more_links_than_any_robot_has_is_refused_at_once(
-        tmp_path: Path, capsys: pytest.CaptureFixture[str], form: str, what: str) -> None:
+        tmp_path: Path, capsys: pytest.CaptureFixture[str], form: str) -> None:
     assert imported(tmp_path, form, chain(form, 10_001)) == 2
     told = capsys.readouterr().err
-    assert f"{form}: has 1000" in told and f" {what}, and 10000 are read at most; give a part of it" in told
+    assert f"{form}: has 1000" in told and " links, more than the 5000 that are read" in told
