@@ -5,8 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-from laconic.tools.report.counting import cachegrind_present, instructions_of
+
 from laconic.base.paths import built
+from laconic.tools.report.counting import cachegrind_present, instructions_of
 
 LEAST, MOST = 500, 1000  # steps: what a count of one run has in common with another's cancels
 LIMITS = {"casters-1": (3, 5.3), "casters-2": (4, 7.5), "tricycle-motor": (3, 8.0), "tricycle-prescribed": (3, 8.2),
