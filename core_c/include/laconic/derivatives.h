@@ -10,17 +10,15 @@
  *
  * What      derivatives of the method's own formulas, not of the exact motion: a filter gets the Jacobian of the
  *           method that it steps with. Exact but for rounding, about 1e-13 of the largest number of the same kind in
- *           double. Where an input turns the vehicle by radians within a step of eighth order with any damping, the
- *           rounds of the method may end before they have settled. The derivatives are then of those rounds, as the step is, and take longer. From
- *           rest such rounds can settle where those of motions beside it diverge: there the derivatives are as large
- *           as those rounds make them. Take a smaller step.
+ *           double. They include the cut of a gain of energy that no input supplies. Where the rounds of a method of
+ *           eighth order with any damping converge late, derivatives take longer.
  * State     here (ν, x, y, θ, χ): 6 + N numbers, in SI units and radians. ν before a step is projected onto the
  *           motions that the constraints allow, as laconic_state_project() does, so a direction that a constraint
  *           forbids has no effect on the velocity, and ν after a step obeys all constraints.
  * Branches  those of the step itself: where auto takes another method in this state, the derivatives are of that one.
  *           A step that is refused has no derivative: its status is returned, and nothing is written.
- * Memory    the caller owns every struct; no heap, at most 24 KB of stack (single: 12 KB; explicit methods of fourth order a
- *           third). No state is changed.
+ * Memory    the caller owns every struct; no heap, at most 24 KB of stack (single: 12 KB; explicit methods of fourth
+ *           order a third). No state is changed.
  * Links     every method, since auto may take most of them. A program for which flash counts calls the forms with _by,
  *           which link one method: laconic_derivation. */
 #ifndef LACONIC_DERIVATIVES_H

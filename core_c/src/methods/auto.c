@@ -2,7 +2,7 @@
  *
  *   exponential-gauss-8   every step that it takes: of eighth order whatever the damping, keeps steady motions and, in
  *                         free motion, the energy
- *   and where it refuses a step, which yaws far (h·|w||g·ζ| above 2, or nearly) or would gain energy:
+ *   and where it refuses a step, which yaws far (h·|w||g·ζ| above 2) or whose rounds do not converge:
  *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the error of the splitting is least
  *   otherwise        exponential-kahan-4   keeps the steady state that fast damping leads to
  *   and where that refuses it, too, exact-flow, which every step suits.

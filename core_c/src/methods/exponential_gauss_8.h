@@ -9,9 +9,9 @@
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
-/* The rounds end when one changes nothing, after 4 to 9 in usual steps, and from ROUNDS on when one moves ζ at the nodes
- * by rounding alone. 8 have the order; ROUNDS find the solution of the collocation up to h·|w||g·ζ| = 1.5. A step for
- * which MOST_ROUNDS do not find it is refused: free motion would not keep its energy. Where they hardly converge, they
+/* The rounds end when one changes nothing, after 4 to 9 in usual steps, and from ROUNDS on when one moves ζ at the
+ * nodes by rounding alone. 8 have the order; ROUNDS find the solution of the collocation up to h·|w||g·ζ| = 1.5. A step
+ * for which MOST_ROUNDS do not find it is refused: free motion would not keep its energy. Rounds that hardly converge
  * end in moves that are larger than a rounding. */
 #define ROUNDS 32
 #define MOST_ROUNDS 128

@@ -13,33 +13,28 @@ vector laconic_forcing_after_yaw(const laconic_forcing *forcing, const laconic_h
     return b;
 }
 
-/* b at three instants of a step. */
-typedef struct forcing_over_step {
-    vector start, middle, end;
-} forcing_over_step;
-
-static forcing_over_step forcing_along(const laconic_model *model, const laconic_state *state, real step_s,
-                                       const laconic_forcing_samples *samples, const increment *by) {
+/* b at the start, in the middle and at the end of a step. */
+INLINE void forcing_along(vector b[3], const laconic_model *model, const laconic_state *state, real step_s,
+                          const laconic_forcing_samples *samples, const increment *by) {
     const real yaw_change = step_s * dot(vec(model->yaw_rate_of_zeta), by->mean);
-    const forcing_over_step b = {forcing_after_yaw(samples->start, &state->heading, R(0)),
-                                 forcing_after_yaw(samples->middle, &state->heading, R(0.5) * yaw_change),
-                                 forcing_after_yaw(samples->end, &state->heading, yaw_change)};
-    return b;
+    const laconic_forcing *const forcing[3] = {samples->start, samples->middle, samples->end};
+    for (int i = 0; i < 3; i++) b[i] = forcing_after_yaw(forcing[i], &state->heading, R(0.5) * R(i) * yaw_change);
 }
 
 /* (1/h)∫b·ζ dt over the step, with b the parabola through its three values and ζ given by its mean and slope. */
-static real work(const forcing_over_step *b, const increment *by) {
-    const vector change = minus(b->end, b->start);
-    const vector mean = scaled(R(1) / R(6), plus(plus(b->start, b->end), scaled(R(4), b->middle)));
+static real work(vector start, vector middle, vector end, const increment *by) {
+    const vector change = minus(end, start);
+    const vector mean = scaled(R(1) / R(6), plus(plus(start, end), scaled(R(4), middle)));
     return dot(mean, by->mean) + (R(1) / R(12)) * dot(change, by->slope);
 }
 
 verdict laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
                                  const laconic_forcing_samples *samples, const increment *by) {
     const vector zeta = zeta_of(state);
-    const forcing_over_step b = forcing_along(model, state, step_s, samples, by);
+    vector b[3];
+    forcing_along(b, model, state, step_s, samples, by);
     const real before = square(zeta), gain = R(2) * dot(zeta, by->delta) + square(by->delta);
-    return gain - R(2) * step_s * work(&b, by) <= ENERGY_TOLERANCE * (R(2) * before + gain);
+    return gain - R(2) * step_s * work(b[0], b[1], b[2], by) <= ENERGY_TOLERANCE * (R(2) * before + gain);
 }
 
 #ifndef LACONIC_LANES
@@ -68,13 +63,14 @@ static bool cut_back(const laconic_model *model, vector zeta, real surplus, incr
 bool laconic_energy_kept(const laconic_model *model, const laconic_state *state, real step_s,
                          const laconic_forcing_samples *samples, increment *by) {
     const vector zeta = zeta_of(state);
-    const forcing_over_step b = forcing_along(model, state, step_s, samples, by);
+    vector b[3];
+    forcing_along(b, model, state, step_s, samples, by);
     const real before = square(zeta), gain = R(2) * dot(zeta, by->delta) + square(by->delta);
-    const real excess = gain - R(2) * step_s * work(&b, by);
-    const real reach = step_s * size(by->mean) * (size(b.start) + size(b.middle) + size(b.end));
+    const real excess = gain - R(2) * step_s * work(b[0], b[1], b[2], by);
+    const real reach = step_s * size(by->mean) * (size(b[0]) + size(b[1]) + size(b[2]));
     if (!(excess <= ENERGY_TOLERANCE * (R(2) * before + gain))) return false;
     if (excess <= ENERGY_ROUNDING * before + R(0.0625) * reach) return true;
-    return cut_back(model, zeta, gain - R(2) * step_s * dot(b.start, by->mean), by);
+    return cut_back(model, zeta, gain - R(2) * step_s * dot(b[0], by->mean), by);
 }
 
 /* Adds to a sum what the addition loses, too, whatever the sizes: value + rest stays exact but for the rest's own

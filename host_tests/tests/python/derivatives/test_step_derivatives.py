@@ -154,9 +154,9 @@ def test_what_is_no_direction_is_refused_in_one_line(message):
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("damping, force_N, moment_Nm", [(0.0, 10.0, -8.0), (0.02, 168.0, 0.0), (0.02, 200.0, 0.0)])
-def test_rounds_of_exponential_gauss_8_that_do_not_settle_are_derived_as_they_are(monkeypatch, damping, force_N,
-                                                                                  moment_Nm):
+@pytest.mark.parametrize("damping, force_N, moment_Nm", [(0.0, 16.0, -8.0), (0.02, 10.0, 8.0)])
+def test_rounds_that_converge_late_are_derived_at_the_solution(monkeypatch, damping, force_N,
+                                                                                      moment_Nm):
     table = {**CARRIAGE, "yaw_inertia_kgm2": 0.225, "com_x_m": 0.0, "com_y_m": 0.02, "wheel_inertia_kgm2": 0.009,
              "motor_damping_Nms": damping, "wheel": [
                  {"kind": "roller", "x_m": x, "y_m": y, "axle_rad": axle, "roller_rad": np.pi / 2}
@@ -169,6 +169,6 @@ def test_rounds_of_exponential_gauss_8_that_do_not_settle_are_derived_as_they_ar
         found = difference(trial, plant, along)
         assert error(tangent(trial, plant, along), found, along) <= TOLERANCE
         with monkeypatch.context() as more:
-            more.setattr(exact_gauss, "MOST_ROUNDS", 400)
-            assert error(difference(trial, plant, along), found, along) > 1e-4
+            more.setattr(exact_gauss, "MOST_ROUNDS", 32)
+            assert error(difference(trial, plant, along), found, along) > 1e-13
     assert adjoint_error(random, trial, plant) <= 1e-13

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 
 from laconic.tools.verify.exact.exact_model import ExactModel, Vector, added, cross, dot
 
-SETTLED, MOST_ROUNDS = mpf(10) ** -38, 32
+SETTLED, MOST_ROUNDS = mpf(10) ** -38, 400
 PARTS = 3  # of a stretch, in double precision
 WHOLE = (mpf(1),)
 POINTS = range(4)
