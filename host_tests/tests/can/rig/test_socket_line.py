@@ -38,6 +38,14 @@ def test_a_look_without_waiting_waits_for_no_frame_that_may_come(ends: Ends) -> 
     assert read(1.0) == "t1250\r" and read(0.0) is None
 
 
+def test_frames_behind_acknowledgements_come_at_the_first_look(ends: Ends) -> None:
+    line, far = ends
+    read = frame_reader(line, bytearray())
+    far.sendall(b"\r\rt1250\r\rt1260\r\r")
+    assert read(1.0) == "t1250\r"
+    assert [read(0.0), read(0.0)] == ["t1260\r", None]
+
+
 def test_a_flush_forgets_the_beginning_of_a_frame(ends: Ends) -> None:
     line, far = ends
     begun = bytearray()

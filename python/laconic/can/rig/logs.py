@@ -11,11 +11,11 @@ from typing import Protocol
 import can
 
 from laconic.base.outputs import make_folder
+from laconic.base.text_file import text_of_file
 from laconic.can.rig.link import Clock
 from laconic.errors import BadInput, reason_of
 from laconic.robot.logs.blf_log import header_of
 from laconic.robot.logs.can_frames import LoggedFrame, read_frames
-from laconic.text_file import text_of_file
 
 
 class Heard(Protocol):

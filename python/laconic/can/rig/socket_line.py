@@ -17,6 +17,7 @@ from typing import Any
 from can.exceptions import error_check
 
 END_OF_FRAME = re.compile(rb"[\r\a]")  # SLCAN's, and of an answer: OK or an error
+ACKNOWLEDGEMENT = "\r"  # of a line that was sent
 
 
 class SocketLine:
@@ -114,7 +115,7 @@ def read_in_chunks(bus: Any) -> None:
 
 def frame_reader(line: SocketLine, begun: bytearray) -> Callable[[float | None], str | None]:
     """In place of slcan's own reader, which asks for each byte by itself: gives the next frame, None when none comes in
-    time. `begun`: slcan's bytes of a frame whose end has not come yet."""
+    time. Acknowledgements are passed over. `begun`: slcan's bytes of a frame whose end has not come yet."""
     def read(timeout_s: float | None) -> str | None:
         deadline_s = None if timeout_s is None else time.monotonic() + timeout_s
         with error_check("Could not read from serial device"):
@@ -125,6 +126,8 @@ def frame_reader(line: SocketLine, begun: bytearray) -> Callable[[float | None],
                 if END_OF_FRAME.match(part[-1:]):
                     whole = begun.decode()
                     begun.clear()
+                    if whole == ACKNOWLEDGEMENT:  # slcan would take it for the absence of a frame
+                        continue
                     return whole
                 if deadline_s is not None and time.monotonic() >= deadline_s:
                     return None
