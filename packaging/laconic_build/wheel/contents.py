@@ -12,7 +12,8 @@ from pathlib import Path
 BUILT = "laconic/_built"
 PACKAGES = {"laconic": "python/laconic", "laconic_fmu": "python/laconic_fmu"}
 READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
-                    "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc")
+                    "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc",
+                    "core_c/include/laconic/methods.h")
 GIVEN_OUT = ("core_c/optional/soft_double",)  # by `laconic core`
 CORE = ("amalgamation/laconic.h", "amalgamation/laconic.c")
 REALS = ("double", "single")
