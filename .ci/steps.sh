@@ -17,8 +17,6 @@ install_missing() {
     lacks g++ g++
     lacks pkg-config pkg-config
     lacks clang clang
-    lacks clang-19 clang-19 libclang-rt-19-dev # MC/DC
-    lacks llvm-cov-19 llvm-19
     lacks git git
     lacks wasm-ld lld # for the core as WebAssembly
     lacks node nodejs

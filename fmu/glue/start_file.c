@@ -40,8 +40,8 @@ static bool is_file_uri(const char *text) {
     return true;
 }
 
-/* A URI of the scheme "file" (with %20 for a blank) or a path → the path with "/start.bin". False iff it does not fit, or
- * %00 would end it. */
+/* A URI of the scheme "file" (with %20 for a blank) or a path → the path with "/start.bin". False iff it does not fit,
+ * or %00 would end it. */
 static bool file_name(char *name, size_t size, const char *resources) {
     static const char tail[] = "/start.bin";
     size_t used = 0;

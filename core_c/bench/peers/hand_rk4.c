@@ -1,6 +1,6 @@
-/* What a step of laconic_rk4 costs at least: written by hand for one vehicle, whose numbers the compiler knows, with voltages
- * held on ideal ground and a yaw below a quarter of a radian in each step. Its bits are those of the core. It stands in
- * for bench.c. HAND_REFUSES: 1 refuses what the core refuses, 0 nothing. */
+/* What a step of laconic_rk4 costs at least: written by hand for one vehicle, whose numbers the compiler knows, with
+ * voltages held on ideal ground and a yaw below a quarter of a radian in each step. Its bits are those of the core. It
+ * stands in for bench.c. HAND_REFUSES: 1 refuses what the core refuses, 0 nothing. */
 #include "bench.h"
 #include "laconic_scene_model.c"
 #include "step_internals.h"

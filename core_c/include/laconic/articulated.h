@@ -28,7 +28,8 @@
  *          γ_b           X_b' at η' = 0;   C: rows of wheels that no following hinge takes up (a wheel under a steered
  *                        hinge, a second axle)
  *
- * Limits   ideal ground (no ground.friction_coefficient), motors without limits; hinges without stops or dry friction. */
+ * Limits   ideal ground (no ground.friction_coefficient), motors without limits; hinges without stops or dry
+ *          friction. */
 #ifndef LACONIC_ARTICULATED_H
 #define LACONIC_ARTICULATED_H
 
@@ -208,7 +209,8 @@ typedef struct laconic_articulated_model {
  *   HINGE_NOT_SET, HINGE_KIND_UNKNOWN, BODY_UNKNOWN (wheel_body, parent: not a lower number), NOT_FINITE, NEGATIVE,
  *   OVERFLOW               numbers of a body or wheel
  *   COORDINATED_ON_BODY    a coordinated hinge whose parent is not the carriage
- *   COORDINATED_WHEEL      a fixed wheel of a coordinated body does not roll along ξ with its axle line through the hinge
+ *   COORDINATED_WHEEL      a fixed wheel of a coordinated body does not roll along ξ with its axle line through the
+ *                          hinge
  *   COORDINATED_TOO_FEW    the carriage's own wheels and coordinated ones together leave more than one motion
  *   MASSLESS_HINGE         an own hinge turns without inertia
  *   STEERED_TOO_OFTEN      fixed wheels under free or motor hinges hold the carriage at nearly every angle: three
@@ -263,8 +265,8 @@ typedef struct laconic_articulated_start {
 
 /* Sets the state: the motion that wheels, prescribed rates and twist of `input` allow and that is nearest in kinetic
  * energy to the given one. `change_m_per_s` (it may be NULL) gets the size of what was changed, as √(2 · energy of the
- * difference / mass of all bodies): about 0 iff the given motion was allowed. Wheel angles become 0. Refuses NOT_FINITE,
- * OVERFLOW, and as laconic_articulated_step does for the posture. */
+ * difference / mass of all bodies): about 0 iff the given motion was allowed. Wheel angles become 0. Refuses
+ * NOT_FINITE, OVERFLOW, and as laconic_articulated_step does for the posture. */
 laconic_status laconic_articulated_state_set(laconic_articulated_state *state, laconic_real *change_m_per_s,
                                              const laconic_articulated_model *model,
                                              const laconic_articulated_start *start,

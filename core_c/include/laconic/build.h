@@ -1,8 +1,8 @@
 /* What a program and the library must be compiled with alike, since it changes structs. Part of laconic.h.
  *
- * Each of these definitions is in the name of an empty function of the library. The functions with which a program begins
- * are called behind them (the macros at the end), so a program with another definition does not link, and the linker
- * names it:
+ * Each of these definitions is in the name of an empty function of the library. The functions with which a program
+ * begins are called behind them (the macros at the end), so a program with another definition does not link, and the
+ * linker names it:
  *
  *     undefined reference to `laconic_built_with_LACONIC_MAX_WHEELS_4'
  *

@@ -128,8 +128,9 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 
 /* -------------------------------------------------------------------------------- vehicle -- */
 
-/* OK iff every number of the vehicle is usable; else the first that is not. O(N). Only the two counts have to be checked
- * for accesses to memory to be defined (docs/assurance.md). The check ensures in addition that results are finite. */
+/* OK iff every number of the vehicle is usable; else the first that is not. O(N). Only the two counts have to be
+ * checked for accesses to memory to be defined (docs/assurance.md). The check ensures in addition that results are
+ * finite. */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to
@@ -324,7 +325,8 @@ uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integ
 /* One step with the input sampled at its start, middle and end. Over the step torques and body
  * wrench are the parabola through the three; b of a force fixed in the world, which rotates against the body, varies
  * linearly between its values at the samples (in second-order methods at start and end). An explicit method of fourth
- * order takes each stage's sample; those of eighth order take a world force, too, along the parabola. Refuses as laconic_step does. */
+ * order takes each stage's sample; those of eighth order take a world force, too, along the parabola. Refuses as
+ * laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);

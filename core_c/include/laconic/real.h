@@ -72,8 +72,8 @@ typedef int64_t laconic_turns;
 #define LACONIC_WHEELS(model) ((model)->wheel_count)
 #endif
 
-/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use: what is left out is not read or
- * not computed. Definitions that change structs are checked when a program is linked (build.h). */
+/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use: what is left out is not read
+ * or not computed. Definitions that change structs are checked when a program is linked (build.h). */
 #ifndef LACONIC_WITH_OWN_WHEELS /* 0: all wheels have the vehicle's values; own ones are not read */
 #define LACONIC_WITH_OWN_WHEELS 1
 #endif

@@ -7,8 +7,8 @@
 
 /* clang-format off */
 
-/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit, $ for the names of
- * the methods). The numbers go on the wire: a new one comes last, and into the value table of RESULT.status in
+/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit, $ for the names
+ * of the methods). The numbers go on the wire: a new one comes last, and into the value table of RESULT.status in
  * laconic.dbc. */
 #define LACONIC_STATUSES(X) \
     X(OK, "ok", \
@@ -85,28 +85,28 @@
       "a fixed wheel on a coordinated hinge must roll along its body's first axis, with the hinge on its axle line; " \
       "give axle_rad = pi/2 or -pi/2 and x_m = 0") \
     X(COORDINATED_TOO_FEW, "coordinated too few", \
-      "# axle lines hold the carriage to the twist, but @ are needed: those of its own fixed wheels and of coordinated " \
-      "ones; use a prescribed or motor hinge") \
+      "# axle lines hold the carriage to the twist, but @ are needed: those of its own fixed wheels and of " \
+      "coordinated ones; use a prescribed or motor hinge") \
     X(MASSLESS_HINGE, "massless hinge", /* an own hinge without inertia; limit: none */ \
-      "this hinge turns without inertia, and no wheel behind it sets its rate; give the body a yaw inertia, place the " \
-      "wheel behind the hinge (a trail), or prescribe the rate") \
+      "this hinge turns without inertia, and no wheel behind it sets its rate; give the body a yaw inertia, place " \
+      "the wheel behind the hinge (a trail), or prescribe the rate") \
     X(STEERED_TOO_OFTEN, "steered too often", \
-      "# axle lines that turn freely or stand still hold the carriage at nearly every angle; use coordinated hinges, or " \
-      "give ground.friction_coefficient, so that wheels slip") \
+      "# axle lines that turn freely or stand still hold the carriage at nearly every angle; use coordinated hinges, " \
+      "or give ground.friction_coefficient, so that wheels slip") \
     X(FRICTION_WITH_HINGES, "friction with hinges", \
       "# does not act on vehicles with hinges; take it out for a ground that holds every wheel") \
     X(TWIST_ZERO, "twist zero", /* value: |T| or |w| */ \
       "the twist gives this steered wheel no direction (its size there is #); keep the turning centre away from the " \
       "hinge, and scale the voltages, not the twist, to stop") \
     X(TWIST_JUMPS, "twist jumps", \
-      "the twist turns this steered wheel by # rad within a step, at most @ rad are possible; change the twist slowly, " \
-      "and reverse by voltages") \
+      "the twist turns this steered wheel by # rad within a step, at most @ rad are possible; change the twist " \
+      "slowly, and reverse by voltages") \
     X(TWIST_AGAINST_WHEELS, "twist against wheels", \
-      "the twist makes fixed wheels of the carriage slide (by # of its size); give one whose turning centre is on their " \
-      "axle line") \
+      "the twist makes fixed wheels of the carriage slide (by # of its size); give one whose turning centre is on " \
+      "their axle line") \
     X(WHEELS_DISAGREE, "wheels disagree", /* value: number of another wheel */ \
-      "this wheel and wheel # ask for different turning centres, so that nothing moves; use coordinated hinges, or give " \
-      "ground.friction_coefficient, so that wheels slip") \
+      "this wheel and wheel # ask for different turning centres, so that nothing moves; use coordinated hinges, or " \
+      "give ground.friction_coefficient, so that wheels slip") \
     X(STEP_BEYOND_TRAIL_LIMIT, "step beyond trail limit", /* explicit methods: h·v/a above their limit */ \
       "# s is unstable with this method because a caster follows too fast (speed over trail); use at most @ s, or auto")
 

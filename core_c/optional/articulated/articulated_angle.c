@@ -1,7 +1,8 @@
-/* The angle of a direction: of short turns by their sine; else a rough one, then what is left of it by the sine of the difference.
+/* The angle of a direction: of short turns by their sine; else a rough one, then what is left of it by the sine of the
+ * difference.
  *
- * With t = smaller/larger component the rough angle t(π/4 + 0.273(1 − t)) is off by at most 4e-3 rad. Of the rest e, the
- * sine of the difference, arcsin e = e + e³/6 + 3e⁵/40 + …: the next term is below 1e-18. */
+ * With t = smaller/larger component the rough angle t(π/4 + 0.273(1 − t)) is off by at most 4e-3 rad. Of the rest e,
+ * the sine of the difference, arcsin e = e + e³/6 + 3e⁵/40 + …: the next term is below 1e-18. */
 #include "articulated_step.h"
 
 #if LACONIC_MAX_BODIES > 0

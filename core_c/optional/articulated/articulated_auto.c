@@ -1,4 +1,5 @@
-/* auto: rk4 in parts that are short beside the fastest motion, and where that takes too many, moebius-4. The rule in full:
+/* auto: rk4 in parts that are short beside the fastest motion, and where that takes too many, moebius-4. The rule in
+ * full:
  *
  *   rate      the largest of: damping and springs (found when the model was prepared), speed over trail of each caster,
  *             yaw rate of each body (of the posture at a part's start)

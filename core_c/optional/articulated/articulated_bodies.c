@@ -4,8 +4,8 @@
  *     I = [[m, 0, −m s_η], [0, m, m s_ξ], [·, ·, I_s + m s²]] + Σ J ρᵀρ,     D = Σ c2 ρᵀρ,     χ' = ρ·X
  *
  * A fixed wheel asks for n·V + ℓω = 0, a locked one for ρ·X = 0. Rows of one body that depend on each other count once.
- * Of a free or motor hinge the row with the largest lever gives ω = −n·V/ℓ, and what is left of the others are rows on V
- * alone; all rows of other hinges are left over. */
+ * Of a free or motor hinge the row with the largest lever gives ω = −n·V/ℓ, and what is left of the others are rows on
+ * V alone; all rows of other hinges are left over. */
 #include "articulated_vehicle.h"
 
 #if LACONIC_MAX_BODIES > 0

@@ -1,8 +1,8 @@
 /* Coordinated steering.
  *
- * One twist T(t) = (T_ξ, T_η, T_θ) commands every steered wheel, so that the carriage has one degree of freedom, X_0 = σ U
- * with U = T/|T|, |T|² = T·I₀T, and the rank of the wheels' rows is exact: no angle is given twice. A hinge at h points
- * along w = T_v + i T_θ h:
+ * One twist T(t) = (T_ξ, T_η, T_θ) commands every steered wheel, so that the carriage has one degree of freedom, X_0 =
+ * σ U with U = T/|T|, |T|² = T·I₀T, and the rank of the wheels' rows is exact: no angle is given twice. A hinge at h
+ * points along w = T_v + i T_θ h:
  *
  *     e^{iψ} = w/|w|,     ψ' = Im(w'/w),     ψ'' = Im(w''/w) − 2 ψ' Re(w'/w),     U' = T'/|T| − U (T·I₀T')/|T|² */
 #ifndef LACONIC_ARTICULATED_COORDINATED_H

@@ -1,4 +1,5 @@
-/* The equations of motion in η: mass and push from what is summed at the root, and their solution for usual vehicles. */
+/* The equations of motion in η: mass and push from what is summed at the root, and their solution for usual
+ * vehicles. */
 #ifndef LACONIC_ARTICULATED_EQUATIONS_H
 #define LACONIC_ARTICULATED_EQUATIONS_H
 

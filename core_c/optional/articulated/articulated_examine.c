@@ -1,5 +1,5 @@
-/* Examines a prepared model at a few postures that are nothing special: does every own hinge turn with inertia, does the
- * carriage move, and how fast does the fastest motion decay or swing?
+/* Examines a prepared model at a few postures that are nothing special: does every own hinge turn with inertia, does
+ * the carriage move, and how fast does the fastest motion decay or swing?
  *
  * Decay: the largest eigenvalue of mass⁻¹ D, with D = Σ B_bᵀD_bB_b and the hinges' damping; swing: the root of that of
  * mass⁻¹ K. Both depend on the angles only mildly; rows left over only lower them. So steps need not compute them. */

@@ -10,12 +10,13 @@
  *        each velocity: a steady motion stays, and what decays fast is gone after one step.
  *     3. all hinges for h/2 with η⁺, from leaf to root: the mirror of 1, so that the step is symmetric
  *
- * The error of a symmetric step has even powers of h alone, so (4 · two half steps − one step)/3 is of fourth order, for η,
- * angles and means. The mean of η is η + κ d, κ = φ2/φ1: exact for decay alone, where the mean of both ends is wrong. Rows
- * left over hold on average over the base step, C(η + d/2) = 0, and are restored at the end, which costs an order.
+ * The error of a symmetric step has even powers of h alone, so (4 · two half steps − one step)/3 is of fourth order,
+ * for η, angles and means. The mean of η is η + κ d, κ = φ2/φ1: exact for decay alone, where the mean of both ends is
+ * wrong. Rows left over hold on average over the base step, C(η + d/2) = 0, and are restored at the end, which costs an
+ * order.
  *
- * Extrapolation would amplify a swing that the step does not resolve (by 5/3). Where a spring swings faster than the step
- * the two half steps stand as they are: of second order, and stable at any stiffness.
+ * Extrapolation would amplify a swing that the step does not resolve (by 5/3). Where a spring swings faster than the
+ * step the two half steps stand as they are: of second order, and stable at any stiffness.
  *
  * J follows from f itself, exactly, as f is quadratic: J e = (f(η + e) − f(η − e))/2. */
 #include "articulated_circle.h"

@@ -1,10 +1,10 @@
 /* Accelerations of one moment, and from them the forces that ground and hinges must deliver, from leaf to root.
  *
- * A body needs W_b = I_b X_b' − a(X_b) − F_b + D_b X_b, and what its children pull. Rows left over deliver their κ (solved
- * with η'), the wheels of a following hinge (W_ω − τ_b)/ℓ along their axle, and the hinge the rest: τ_b is known of free
- * and motor hinges and is W_ω of commanded ones. Wheels of one body that share an axle line share its force (least norm).
- * Wheels of coordinated bodies and of the carriage hold the carriage together: least norm over all of them. What that
- * leaves at body 0 is a check of the whole. */
+ * A body needs W_b = I_b X_b' − a(X_b) − F_b + D_b X_b, and what its children pull. Rows left over deliver their κ
+ * (solved with η'), the wheels of a following hinge (W_ω − τ_b)/ℓ along their axle, and the hinge the rest: τ_b is
+ * known of free and motor hinges and is W_ω of commanded ones. Wheels of one body that share an axle line share its
+ * force (least norm). Wheels of coordinated bodies and of the carriage hold the carriage together: least norm over all
+ * of them. What that leaves at body 0 is a check of the whole. */
 #include "articulated_step.h"
 #include "least_norm.h"
 

@@ -1,9 +1,9 @@
 /* rk4 and circle: classical Runge-Kutta for η and all angles, of order 4. Mean twists, for pose and wheel angles, come
  * from the same stages by Simpson's weights.
  *
- * circle moves following angles by exact maps of the circle instead (articulated_circle.h), so that no caster is too fast
- * for it: the commutator-free method of order 4 of Celledoni, Marthinsen and Owren (2003). With the flows F_g of the
- * stages and z = exp(hF) z₀ for the map of a constant flow, the stages are
+ * circle moves following angles by exact maps of the circle instead (articulated_circle.h), so that no caster is too
+ * fast for it: the commutator-free method of order 4 of Celledoni, Marthinsen and Owren (2003). With the flows F_g of
+ * the stages and z = exp(hF) z₀ for the map of a constant flow, the stages are
  *
  *     z₂ = exp(½hF₁) z₀,   z₃ = exp(½hF₂) z₀,   z₄ = exp(h(F₃ − ½F₁)) z₂,
  *     z⁺ = exp(h(−F₁ + 2F₂ + 2F₃ + 3F₄)/12) exp(h(3F₁ + 2F₂ + 2F₃ − F₄)/12) z₀ */

@@ -1,6 +1,6 @@
 /* Solves mass · x = push + Cᵀκ with C x = target. mass = L diag(1/d) Lᵀ without roots; the rows z = L⁻¹Cᵀ are made
- * orthogonal in the metric d one after another (twice, for rounding), and each moves y = L⁻¹ push along itself until its
- * target holds. So a row that depends on earlier ones is found by what is left of it, relative to itself. */
+ * orthogonal in the metric d one after another (twice, for rounding), and each moves y = L⁻¹ push along itself until
+ * its target holds. So a row that depends on earlier ones is found by what is left of it, relative to itself. */
 #include "articulated_equations.h"
 
 #if LACONIC_MAX_BODIES > 0

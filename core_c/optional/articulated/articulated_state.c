@@ -2,8 +2,8 @@
  *
  * A change of commands is an impulse: with X⁻ the twists before and X⁺ those at the same η after it, the change of η
  * obeys mass · x = Σ B_bᵀ I_b (X⁻ − X⁺) + Cᵀκ with C(η + x) = 0. The momenta along all motions that are allowed
- * afterwards stay, and of all allowed motions this one is nearest to X⁻ in kinetic energy. A start is the same from η = 0,
- * with the given twists as X⁻. */
+ * afterwards stay, and of all allowed motions this one is nearest to X⁻ in kinetic energy. A start is the same from η =
+ * 0, with the given twists as X⁻. */
 #include "articulated_step.h"
 #include "step_internals.h"
 

@@ -58,8 +58,8 @@ real laconic_articulated_commanded_turn(const articulated_course *course, int32_
 /* False where a number of it is not finite. */
 bool laconic_articulated_drive_is_finite(const articulated_drive *drive, const laconic_articulated_model *m);
 
-/* Refuses a twist that the carriage's wheels do not allow, or that gives a hinge no direction or turns it too far between
- * the two: beyond that sine, or beyond a quarter turn. */
+/* Refuses a twist that the carriage's wheels do not allow, or that gives a hinge no direction or turns it too far
+ * between the two: beyond that sine, or beyond a quarter turn. */
 laconic_status laconic_articulated_check_twist(const laconic_articulated_model *m, const articulated_drive *from,
                                                const articulated_drive *to, real largest_sine, laconic_refusal *why);
 

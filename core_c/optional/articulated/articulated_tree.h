@@ -1,10 +1,10 @@
-/* What the methods for articulated vehicles share: twists along the tree from root to leaf, forces and inertias from leaf
- * to root, and the equations of motion in η. All of it is inlined into each method.
+/* What the methods for articulated vehicles share: twists along the tree from root to leaf, forces and inertias from
+ * leaf to root, and the equations of motion in η. All of it is inlined into each method.
  *
- * A covector is a force with its moment about a body's origin. The twist of a child is X_b = T_b X_p (+ its own ω, or + a
- * prescribed rate), so a covector of the child counts at the parent as T_bᵀ times it, and an inertia as T_bᵀ A T_b. With
- * the bodies in order of their numbers one pass inwards sums all of it at the root: work grows with H, not with H k². Only
- * own hinges and rows left over travel as covectors of their own. */
+ * A covector is a force with its moment about a body's origin. The twist of a child is X_b = T_b X_p (+ its own ω, or +
+ * a prescribed rate), so a covector of the child counts at the parent as T_bᵀ times it, and an inertia as T_bᵀ A T_b.
+ * With the bodies in order of their numbers one pass inwards sums all of it at the root: work grows with H, not with H
+ * k². Only own hinges and rows left over travel as covectors of their own. */
 #ifndef LACONIC_ARTICULATED_TREE_H
 #define LACONIC_ARTICULATED_TREE_H
 

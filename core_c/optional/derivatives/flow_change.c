@@ -1,5 +1,5 @@
-/* The splitting with the exact free motion, linearised (exact_flow.c). The free motion is a rotation of ζ by an angle that depends on
- * ζ: its derivative is the rotation, plus what the change of the angle adds. */
+/* The splitting with the exact free motion, linearised (exact_flow.c). The free motion is a rotation of ζ by an angle
+ * that depends on ζ: its derivative is the rotation, plus what the change of the angle adds. */
 #include "base_change.h"
 
 /* tan √z/√z = s/c and c² times its derivative by z; s and c have a common factor. */

@@ -1,6 +1,6 @@
-/* Collocation at Gauss' points, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as ζ does:
- * with F at the nodes and the panel's weights, by rounds until they settle. The step has been taken, so the rounds of ζ
- * find the solution of the collocation: all rounds of a direction are linearised there. */
+/* Collocation at Gauss' points, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as
+ * ζ does: with F at the nodes and the panel's weights, by rounds until they settle. The step has been taken, so the
+ * rounds of ζ find the solution of the collocation: all rounds of a direction are linearised there. */
 #include "exponential_gauss_8.h"
 #include "gauss_weight_change.h"
 #include "step_change.h"

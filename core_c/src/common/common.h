@@ -28,8 +28,9 @@
 
 typedef laconic_real real;
 
-/* The text of the methods stands for one vehicle, and in core_c/optional/batch for many side by side, one in each lane. What it
- * does by conditions it therefore says by these words. Here each is the plain operation, and costs what that costs. */
+/* The text of the methods stands for one vehicle, and in core_c/optional/batch for many side by side, one in each lane.
+ * What it does by conditions it therefore says by these words. Here each is the plain operation, and costs what that
+ * costs. */
 #ifndef LACONIC_LANES
 typedef bool verdict;    /* the result of a comparison                                    */
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler       */

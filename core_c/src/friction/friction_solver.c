@@ -24,8 +24,8 @@
  * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
  * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
  * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
- * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. ROUNDED is
- * 2.5 units in the last place in both types. It must exceed HIDDEN, which is part of the residual that it bounds. */
+ * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. ROUNDED
+ * is 2.5 units in the last place in both types. It must exceed HIDDEN, which is part of the residual that it bounds. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define RESOLVED R(4e-5)

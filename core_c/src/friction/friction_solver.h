@@ -34,8 +34,8 @@ void laconic_friction_prepare(friction_wheel *wheel);
  * numbers are not finite or FRICTION_MOST_PASSES did not suffice, and then the contents of nu, speed and impulse mean
  * nothing. count is at most LACONIC_MAX_WHEELS.
  * Accepted results have a residual of at most 1e-9, relative to the free motion (ν* and (j s* + motor)/(j + viscous +
- * slope), in the norm of these masses), and 6e-16 of the contacts' impulses where these are larger; in single of 1e-4 and
- * 3e-7.
+ * slope), in the norm of these masses), and 6e-16 of the contacts' impulses where these are larger; in single of 1e-4
+ * and 3e-7.
  * Speeds below 1e-10 (1e-4) of it are made exactly 0, and so is a free motion below 1e-142 rad/s (1e-14). */
 #define FRICTION_MOST_PASSES 50
 int32_t laconic_friction_solve(const friction_wheel wheels[], const friction_load loads[], int32_t count,

@@ -153,27 +153,6 @@ static void light_wheels_whose_rollers_hardly_drag_are_solved_as_far_as_numbers_
     }
 }
 
-/* Light wheels with strong motors push against each other a million times as hard as the free motion: the rounding of
- * their impulses is more than the residual that is asked for elsewhere. */
-static void wheels_that_hold_each_other_far_above_the_free_motion_are_solved(void) {
-    for (int n = 0; n < 200; n++) {
-        problem p;
-        memset(&p, 0, sizeof p);
-        const double inertia = EITHER(decades(1e-11, 1e-10), decades(1e-6, 1e-5)), push = decades(1e-3, 1e3);
-        for (int i = 0; i < 4; i++) {
-            friction_load *l = &p.load[i];
-            put_wheel(&p, i & 1 ? 0.7 : -0.7, i & 2 ? 0.5 : -0.5, PI / 2, PI / 2, 1, inertia);
-            l->grip = l->drive_limit = LACONIC_REAL_MAX;
-            l->drive = REAL((i & 2 ? push : -push) * (1 + either_sign(0.1)));
-            l->drive_slope = 100;
-            l->free_speed = p.speed[i] = REAL(either_sign(1e-3));
-        }
-        for (int m = 0; m < 3; m++) p.free[m] = p.nu[m] = REAL(either_sign(1e-2));
-        TEST_ASSERT_GREATER_THAN(0, solve(&p));
-        TEST_ASSERT_TRUE(residual_of(&p) < EITHER(ACCEPTED, 0.1));
-    }
-}
-
 static void random_vehicles_at_random_speeds_are_solved(void) {
     int refused = 0;
     double worst = 0;
@@ -445,7 +424,6 @@ int main(void) {
     RUN_TEST(a_wheel_with_free_rollers_at_the_border_of_its_grip_is_solved);
     RUN_TEST(little_drag_tends_to_none);
     RUN_TEST(light_wheels_whose_rollers_hardly_drag_are_solved_as_far_as_numbers_tell);
-    RUN_TEST(wheels_that_hold_each_other_far_above_the_free_motion_are_solved);
     RUN_TEST(random_vehicles_at_random_speeds_are_solved);
     RUN_TEST(coasting_vehicles_lose_energy_in_every_step_and_are_seldom_refused);
     RUN_TEST(a_vehicle_and_its_mirror_image_are_solved_in_as_many_passes);

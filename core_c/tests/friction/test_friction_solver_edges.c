@@ -157,6 +157,27 @@ static void a_pass_that_leaves_just_a_tenth_is_worth_it(void) {
     TEST_ASSERT_EQUAL_INT(EITHER(6, 4), solve(&p));
 }
 
+/* Light wheels with strong motors push against each other a million times as hard as the free motion: the rounding of
+ * their impulses is more than the residual that is asked for elsewhere. */
+static void wheels_that_hold_each_other_far_above_the_free_motion_are_solved(void) {
+    for (int n = 0; n < 200; n++) {
+        problem p;
+        memset(&p, 0, sizeof p);
+        const double inertia = EITHER(decades(1e-11, 1e-10), decades(1e-6, 1e-5)), push = decades(1e-3, 1e3);
+        for (int i = 0; i < 4; i++) {
+            friction_load *l = &p.load[i];
+            put_wheel(&p, i & 1 ? 0.7 : -0.7, i & 2 ? 0.5 : -0.5, PI / 2, PI / 2, 1, inertia);
+            l->grip = l->drive_limit = LACONIC_REAL_MAX;
+            l->drive = REAL((i & 2 ? push : -push) * (1 + either_sign(0.1)));
+            l->drive_slope = 100;
+            l->free_speed = p.speed[i] = REAL(either_sign(1e-3));
+        }
+        for (int m = 0; m < 3; m++) p.free[m] = p.nu[m] = REAL(either_sign(1e-2));
+        TEST_ASSERT_GREATER_THAN(0, solve(&p));
+        TEST_ASSERT_TRUE(residual_of(&p) < EITHER(1e-9, 0.1));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(residual_and_imbalance_are_within_the_tolerance_together);
@@ -168,5 +189,6 @@ int main(void) {
     RUN_TEST(a_slip_that_is_as_stiff_as_the_penalty_has_these_bits);
     RUN_TEST(a_residual_of_just_the_tolerance_is_solved);
     RUN_TEST(a_pass_that_leaves_just_a_tenth_is_worth_it);
+    RUN_TEST(wheels_that_hold_each_other_far_above_the_free_motion_are_solved);
     return UNITY_END();
 }

@@ -39,8 +39,8 @@ static inline void expect(uint64_t bits) {
     TEST_ASSERT_TRUE_MESSAGE(hash == bits, found);
 }
 
-/* Methods from number 0 on whose bits these tests hold. Of a later one trajectory_hash.c prints a line, which must be the
- * same from every build. */
+/* Methods from number 0 on whose bits these tests hold. Of a later one trajectory_hash.c prints a line, which must be
+ * the same from every build. */
 #define METHODS_WITH_BITS 8
 
 /* One hash for each method: those of a method that was changed on purpose can be renewed alone. */

@@ -1,5 +1,6 @@
-/* What a port and the node must be compiled with alike, since it changes structs, as laconic/build.h has it for the core:
- * each definition is in the name of an empty function, and a port with another one does not link. Part of node.h. */
+/* What a port and the node must be compiled with alike, since it changes structs, as laconic/build.h has it for the
+ * core: each definition is in the name of an empty function, and a port with another one does not link. Part of
+ * node.h. */
 #ifndef LACONIC_NODE_BUILD_H
 #define LACONIC_NODE_BUILD_H
 

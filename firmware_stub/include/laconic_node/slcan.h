@@ -37,8 +37,8 @@ void laconic_slcan_init(laconic_slcan *slcan, char required_rate);
 /* To be called for each byte received. Returns a frame only while the channel is open and not listen-only. */
 laconic_slcan_event laconic_slcan_feed(laconic_slcan *slcan, char byte, laconic_frame *frame);
 
-/* Writes the frame as a line with its CR and returns the length. Returns 0 iff the channel is closed, the rate wrong, or
- * the frame's length is one that its kind of CAN does not have or this build has no room for. */
+/* Writes the frame as a line with its CR and returns the length. Returns 0 iff the channel is closed, the rate wrong,
+ * or the frame's length is one that its kind of CAN does not have or this build has no room for. */
 size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]);
 
 /* A port with another definition than slcan.c does not link (build.h). */

@@ -9,9 +9,9 @@
  *
  * The upper half of the freshness is the nonce of the node's last CHALLENGE, which differs at each power-up and OPEN;
  * the lower one counts the frames that were sent since. So nothing that was ever recorded passes again, and nobody
- * stores anything. After 2³² − 1 frames the count is used up, and the rig must begin a new session: a count that went on
- * would become another nonce, and the next CHALLENGE would make recorded frames pass. HELLO passes without a code: it only asks for CHALLENGE. Frames for others (drives) pass as they
- * are. */
+ * stores anything. After 2³² − 1 frames the count is used up, and the rig must begin a new session: a count that went
+ * on would become another nonce, and the next CHALLENGE would make recorded frames pass. HELLO passes without a code:
+ * it only asks for CHALLENGE. Frames for others (drives) pass as they are. */
 #ifndef LACONIC_SECURE_GATE_H
 #define LACONIC_SECURE_GATE_H
 
@@ -38,8 +38,8 @@ bool laconic_gate_take(laconic_gate *gate, const laconic_frame *frame, laconic_f
 /* To be told of each frame that the node sends: a CHALLENGE begins a new freshness. */
 void laconic_gate_sent(laconic_gate *gate, const laconic_frame *frame);
 
-/* The rig's side: the frame that must follow this one. False iff none must, or there is none: laconic_gate_is_spent(), or
- * a frame whose length no frame has. */
+/* The rig's side: the frame that must follow this one. False iff none must, or there is none: laconic_gate_is_spent(),
+ * or a frame whose length no frame has. */
 bool laconic_gate_seal(laconic_gate *gate, const laconic_frame *frame, laconic_frame *code);
 
 /* True iff this frame needs a code, and all that follow the last CHALLENGE have been used. */

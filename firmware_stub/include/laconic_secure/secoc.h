@@ -35,8 +35,8 @@ typedef enum laconic_secoc_status {
 /* "accepted", "wrong key or changed message" … */
 const char *laconic_secoc_text(laconic_secoc_status status);
 
-/* Writes one byte of freshness and `code_bytes` (at most 16) of the code. Returns false, and writes nothing, iff there are
- * to be more, or the payload's `length` is above LACONIC_SECOC_LONGEST. */
+/* Writes one byte of freshness and `code_bytes` (at most 16) of the code. Returns false, and writes nothing, iff there
+ * are to be more, or the payload's `length` is above LACONIC_SECOC_LONGEST. */
 bool laconic_secoc_seal(const laconic_cmac_key *key, uint16_t number, uint64_t freshness, const uint8_t *payload,
                         size_t length, uint8_t *trailer, size_t code_bytes);
 

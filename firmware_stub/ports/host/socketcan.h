@@ -8,12 +8,12 @@
 
 #include <linux/can.h>
 
-/* The frame as the kernel takes it. Returns how many bytes are to be written: CAN_MTU or CANFD_MTU, or 0 iff the frame is
- * longer than its kind allows or this build has room for. */
+/* The frame as the kernel takes it. Returns how many bytes are to be written: CAN_MTU or CANFD_MTU, or 0 iff the frame
+ * is longer than its kind allows or this build has room for. */
 size_t socketcan_put(struct canfd_frame *to, const laconic_frame *frame);
 
-/* What was read, `size` bytes, as a frame. False iff it is not a frame of a bus (an error frame, or another size), or one
- * of CAN FD in a build without it. */
+/* What was read, `size` bytes, as a frame. False iff it is not a frame of a bus (an error frame, or another size), or
+ * one of CAN FD in a build without it. */
 bool socketcan_take(laconic_frame *frame, const struct canfd_frame *from, size_t size);
 
 /* A node on a socket that does not block and keeps the ends of frames. */
@@ -27,8 +27,8 @@ typedef struct socketcan_port {
     size_t unsent_size;
 } socketcan_port;
 
-/* The socket of an interface such as "can0", which is up. Returns -1 with errno where there is none, or it cannot do CAN
- * FD and this build does. */
+/* The socket of an interface such as "can0", which is up. Returns -1 with errno where there is none, or it cannot do
+ * CAN FD and this build does. */
 int socketcan_open(const char *interface);
 
 /* Takes the frames that wait, one period or step of the node, and sends its frames as far as the kernel takes them; the

@@ -1,5 +1,5 @@
-/* Tests of a node whose core reads no inputs and has neither pose nor wheel angles: SELECT refuses what would do nothing
- * or show nothing, so that no rig believes in it. */
+/* Tests of a node whose core reads no inputs and has neither pose nor wheel angles: SELECT refuses what would do
+ * nothing or show nothing, so that no rig believes in it. */
 #include "bench.h"
 #include "unity.h"
 

@@ -81,7 +81,8 @@ static void any_contact(laconic_contact *of) {
     }
 }
 
-/* ---- a plant that has been started, and its sensors: counts and flags are as the functions that prepare leave them -- */
+/* ---- a plant that has been started, and its sensors: counts and flags are as the functions that prepare leave them
+ * -- */
 
 static laconic_plant plant;
 static laconic_sensors sensors;

@@ -16,9 +16,9 @@ from pathlib import Path
 import cantools
 from cantools.database.can import Database, Message
 
-from laconic.dbc_statements import MessageText, read_statements
+from laconic.base.text_file import text_of_file
+from laconic.can.dbc_statements import MessageText, read_statements
 from laconic.errors import BadInput, nearest_of
-from laconic.text_file import text_of_file
 
 OTHER_FORMATS = (".arxml", ".kcd", ".sym", ".xls", ".xlsx")  # of the library that reads them
 WANTED = "a DBC file"

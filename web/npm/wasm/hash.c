@@ -1,5 +1,5 @@
-/* The numbers that core_c/tests/bits/trajectory_hash.c prints, for JavaScript: its main() runs unchanged, and what it prints
- * is kept instead. */
+/* The numbers that core_c/tests/bits/trajectory_hash.c prints, for JavaScript: its main() runs unchanged, and what it
+ * prints is kept instead. */
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>

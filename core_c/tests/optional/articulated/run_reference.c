@@ -1,11 +1,11 @@
 /* Runs an articulated vehicle from plain numbers on standard input, for host_tests, which write them from recorded
  * references and judge what it prints.
  *
- *   vehicle  mass inertia com_x com_y friction slope slope_heading  H {parent kind hinge_x hinge_y mass com_x com_y inertia
- *            damping stiffness rest gain}  N {body kind x y axle roller radius inertia gain damping locked}
+ *   vehicle  mass inertia com_x com_y friction slope slope_heading  H {parent kind hinge_x hinge_y mass com_x com_y
+ *            inertia damping stiffness rest gain}  N {body kind x y axle roller radius inertia gain damping locked}
  *   method   name step
- *   input    a course: N voltages, N torques, 3 body wrench, 2 world force, 2 point, H hinge voltages, H hinge torques, H
- *            rates and 3 twists as polynomials in time (count, coefficients)
+ *   input    a course: N voltages, N torques, 3 body wrench, 2 world force, 2 point, H hinge voltages, H hinge torques,
+ *            H rates and 3 twists as polynomials in time (count, coefficients)
  *   start    vx vy yaw_rate x y heading  H angles  H rates       with the input at its start
  *   run      duration steps                                      along the input, from its start
  *   motion   prints t, velocity, pose, angles, rates, wheel speeds, wheel angles, energy

@@ -110,7 +110,8 @@ static long steps_of_one(void) {
         assert_finite(&m, &s);
         taken++;
     }
-    /* Two axle lines that nearly coincide hold a coordinated carriage by forces beyond all measure, so others are judged. */
+    /* Two axle lines that nearly coincide hold a coordinated carriage by forces beyond all measure, so others are
+     * judged. */
     if (laconic_articulated_reactions_of(&forces, &m, &s, &in, NULL, &refusal) == LACONIC_OK && !m.coordinated)
         TEST_ASSERT_TRUE_MESSAGE(forces.balance <= REAL(EITHER(1e-2, 1)), "body 0 is not in balance");
     return taken;

@@ -106,8 +106,8 @@ static bool are_sizes(const laconic_error *error) {
     return error->nu_rad_per_s >= 0 && error->place_m >= 0 && error->heading_rad >= 0 && error->wheel_angle_rad >= 0;
 }
 
-/* Methods of second order do not use the world force in the middle of a step, so they accept one whose effect leaves the
- * range. The true motion follows it: the error is infinite, and it stays so. */
+/* Methods of second order do not use the world force in the middle of a step, so they accept one whose effect leaves
+ * the range. The true motion follows it: the error is infinite, and it stays so. */
 static void an_error_beyond_the_range_is_infinite_and_not_nan(void) {
     static const laconic_method *const methods[] = {&laconic_exact_flow, &laconic_exponential_kahan};
     const laconic_vehicle v = with_motors(three_wheels());

@@ -8,7 +8,6 @@ from pathlib import Path
 import can
 import cantools
 import pytest
-from log_support import CAN_MAP, asc, asc_lines, frames, mapped, path_error, refused_log
 
 from laconic.can.dbc_file import load_dbc
 from laconic.can.play.map_dbc import DbcMessage
@@ -16,6 +15,7 @@ from laconic.can.play.map_file import Counter, Joint, Received, Sent, read_map
 from laconic.can.play.map_messages import Receiver, Sender
 from laconic.cli.main import run
 from laconic.errors import BadInput
+from log_support import CAN_MAP, asc, asc_lines, frames, mapped, path_error, refused_log
 from play_support import DBC as TRANSPORTER
 from play_support import PLAY, played
 

@@ -195,17 +195,27 @@ def test_a_mesh_outside_of_the_robots_folder_is_not_opened(tmp_path: Path, uri: 
 @pytest.mark.parametrize("robot, uri", [
     ("robot.urdf", "meshes/wheel.obj"), ("urdf/robot.urdf", "../meshes/wheel.obj"),
     ("robots/a/b/robot.urdf", "../../../meshes/wheel.obj"), ("urdf/robot.urdf", "package://kit/meshes/wheel.obj"),
-    ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"),
+    ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"), ("urdf/robot.urdf", "package://other/wheel.obj"),
     ("urdf/robot.urdf", "package://given/wheel.obj"), ("urdf/robot.urdf", "file://{}/../elsewhere/wheel.obj")])
 def test_a_mesh_of_the_robot_its_kit_or_a_package_is_read(tmp_path: Path, robot: str, uri: str) -> None:
     kit = tmp_path / "kit"
     for folder in (kit / "meshes", tmp_path / "other", tmp_path / "elsewhere", (kit / robot).parent):
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "wheel.obj").write_text(TRIANGLE, encoding="utf-8")
-    (kit / "package.xml").touch()
+    for package in (kit, tmp_path / "other"):
+        (package / "package.xml").touch()
     with MeshFiles(kit / robot, {"given": tmp_path / "elsewhere"}) as files:
         found = files.points(uri.format(kit))
     assert found is not None and found.shape == (3, 3) and not files.missing
+
+
+def test_a_mesh_behind_a_link_that_leaves_the_robots_folder_is_not_opened(tmp_path: Path) -> None:
+    (tmp_path / "kit").mkdir()
+    (tmp_path / "wheel.obj").write_text(TRIANGLE, encoding="utf-8")
+    (tmp_path / "kit" / "linked.obj").symlink_to(tmp_path / "wheel.obj")
+    with MeshFiles(tmp_path / "kit" / "robot.urdf") as files:
+        assert files.points("linked.obj") is None
+    assert "lies outside the robot's folder" in files.missing["linked.obj"]
 
 
 def chain(form: str, count: int) -> str:

@@ -8,6 +8,8 @@ import zlib
 from pathlib import Path
 
 import pytest
+
+from laconic.cli.main import run
 from log_support import (
     SCENE,
     asc,
@@ -21,8 +23,6 @@ from log_support import (
     refused_log,
     replayed,
 )
-
-from laconic.cli.main import run
 
 HEAD = 144
 

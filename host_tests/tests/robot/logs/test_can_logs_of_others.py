@@ -8,6 +8,13 @@ import struct
 import can
 import numpy as np
 import pytest
+
+from laconic.can.dbc_file import load_dbc
+from laconic.can.rig.logs import read_log
+from laconic.cli.main import run
+from laconic.robot.logs import gather_logs
+from laconic.robot.logs.can_frames import read_frames
+from laconic.robot.logs.can_signals import Bits, Words
 from log_support import (
     ASC_HEAD,
     DBC,
@@ -23,13 +30,6 @@ from log_support import (
     refused_log,
     replayed,
 )
-
-from laconic.can.dbc_file import load_dbc
-from laconic.can.rig.logs import read_log
-from laconic.cli.main import run
-from laconic.robot.logs import gather_logs
-from laconic.robot.logs.can_frames import read_frames
-from laconic.robot.logs.can_signals import Bits, Words
 
 SMALL = 1e-5
 

@@ -7,10 +7,10 @@ import json
 
 import numpy as np
 import pytest
-from log_support import SCENE, TEXT_MAP, csv, mapped, motion, refused_log, replayed
 
 from laconic.cli.main import run
 from laconic.robot.logs import gather_logs
+from log_support import SCENE, TEXT_MAP, csv, mapped, motion, refused_log, replayed
 
 HEAD = ("t", "left", "right", "x", "y", "yaw")
 

@@ -8,6 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+from laconic.can.play.map_file import read_map
+from laconic.can.play.map_join import join
+from laconic.cli.main import run
+from laconic.errors import BadInput
 from log_support import (
     CAN_MAP,
     DBC,
@@ -23,11 +28,6 @@ from log_support import (
     mapped,
     motion,
 )
-
-from laconic.can.play.map_file import read_map
-from laconic.can.play.map_join import join
-from laconic.cli.main import run
-from laconic.errors import BadInput
 from play_support import DBC as TRANSPORTER
 from play_support import PLAY
 

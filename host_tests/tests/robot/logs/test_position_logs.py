@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from log_support import CAN_MAP, SCENE, TEXT_MAP, asc, asc_lines, csv, frames, mapped, motion, refused_log, replayed
 
 from laconic.base.paths import scene_path
 from laconic.cli.main import run
@@ -20,6 +19,7 @@ from laconic.robot.logs import gather_logs
 from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import rolling_of
 from laconic.scene import read_scene
+from log_support import CAN_MAP, SCENE, TEXT_MAP, asc, asc_lines, csv, frames, mapped, motion, refused_log, replayed
 
 POSITIONS = TEXT_MAP.replace('["x", "y", "yaw"]', '["x", "y"]')
 HEAD = ("t", "left", "right", "x", "y")

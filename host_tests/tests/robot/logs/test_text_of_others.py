@@ -6,6 +6,10 @@ import gzip
 
 import numpy as np
 import pytest
+
+from laconic.base.text_file import NotText, decoded, text_of_file
+from laconic.errors import BadInput
+from laconic.robot.logs import gather_logs
 from log_support import (
     CAN_MAP,
     DBC,
@@ -20,10 +24,6 @@ from log_support import (
     refused_log,
     replayed,
 )
-
-from laconic.errors import BadInput
-from laconic.robot.logs import gather_logs
-from laconic.text_file import NotText, decoded, text_of_file
 
 ENCODINGS = {"UTF-8": lambda text: text.encode(), "UTF-8 with a mark": lambda text: text.encode("utf-8-sig"),
              "UTF-16 with a mark": lambda text: text.encode("utf-16"),

@@ -6,6 +6,9 @@ import json
 
 import numpy as np
 import pytest
+
+from laconic.cli.main import run
+from laconic.robot.logs import gather_logs
 from log_support import (
     CAN_MAP,
     SCENE,
@@ -20,9 +23,6 @@ from log_support import (
     refused_log,
     replayed,
 )
-
-from laconic.cli.main import run
-from laconic.robot.logs import gather_logs
 
 TICKS = 4096
 

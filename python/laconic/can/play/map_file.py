@@ -11,7 +11,7 @@ from typing import Any
 
 from laconic.can.play.checksums import Checksum, read_checksum
 from laconic.can.play.map_signals import OF_ANGLE, inputs_of, outputs_of, why_unknown
-from laconic.map_toml import read_map_toml
+from laconic.scene.map_toml import read_map_toml
 from laconic.scene.table import Table
 
 AT_TIMEOUT = ("hold", "zero", "off", "end")

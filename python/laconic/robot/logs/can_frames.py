@@ -16,8 +16,8 @@ from typing import NoReturn
 
 import can
 
+from laconic.base.text_file import TextOfFile, beginning_of, text_of_file
 from laconic.errors import BadInput, reason_of
-from laconic.text_file import TextOfFile, beginning_of, text_of_file
 
 CAN_ENDINGS = (".asc", ".blf", ".log", ".trc")
 WANTED = "a CAN log: .asc, .blf, .log of candump, or .trc"

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput, nearest_of, shown
-from laconic.map_toml import read_map_toml
 from laconic.robot.logs.log import PER_WHEEL, POINTS
 from laconic.robot.logs.units import ANGLE, OF_QUANTITY, TICK
+from laconic.scene.map_toml import read_map_toml
 from laconic.scene.table import Table
 
 MAPS = Path(__file__).with_name("maps")

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
+from laconic.base.text_file import TextOfFile, text_of_file
 from laconic.errors import BadInput, nearest_of, shown
 from laconic.robot.logs.column_map import Column, ColumnMap
-from laconic.text_file import TextOfFile, text_of_file
 
 LONGEST_SHOWN = 40
 MOST_LISTED = 20

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from laconic.base.text_file import beginning_of
 from laconic.errors import BadInput
 from laconic.robot.logs.log import counted
 from laconic.robot.logs.text_table import number_of, rows_of, text_of
@@ -21,7 +22,6 @@ from laconic.scene.inputs import Input, step_in_words, step_remedy
 from laconic.scene.sensors import OF_ENCODERS
 from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
 from laconic.simulation import simulate
-from laconic.text_file import beginning_of
 
 TIME = "time_s"
 ON_THE_GRID = 1e-6  # of a step, as for inputs

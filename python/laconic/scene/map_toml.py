@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from laconic.base.text_file import NotText, decoded
 from laconic.errors import BadInput
 from laconic.scene.table import Table, read_toml
-from laconic.text_file import NotText, decoded
 
 
 def read_map_toml(path: Path) -> Table:
