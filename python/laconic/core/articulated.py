@@ -347,13 +347,3 @@ def _check_names(names: Sequence[str]) -> None:
                            "letters, digits, _ and -, with a letter first")
         if name in (CARRIAGE, *names[:at]):
             raise BadInput(f"vehicle.body[{at + 1}].name: {shown(name)} is taken; give each body another name")
-
-
-def refusal_of_hinges(refused: Refused, places: Sequence[str], names: Sequence[str]) -> Refused:
-    """A refusal of the core with the file's table instead of the number of a body; `places`: of each body."""
-    text = refused.message
-    found = re.match(r"vehicle\.body\[(\d+)\]", text)
-    if found and 1 <= int(found[1]) <= len(places):
-        at = int(found[1]) - 1
-        text = f"{places[at]}{text[found.end():]}".replace(": ", f": {names[at]}: ", 1)
-    return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)
