@@ -26,7 +26,7 @@ from laconic.core.binding import Core, load
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, items, number, one_of, shown, step_count
 from laconic.core.spelling import with_radians
-from laconic.errors import BadInput, Refused, nearest_of
+from laconic.errors import BadInput, nearest_of
 
 HINGES = ("free", "motor", "prescribed", "coordinated")
 """Kinds of hinges; their numbers in the core begin with 1."""

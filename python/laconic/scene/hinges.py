@@ -11,12 +11,14 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+from laconic.base.paths import scene_names, scene_path
 from laconic.core.articulated import CARRIAGE, NAME
-from laconic.errors import Refused, nearest_of, shown
+from laconic.errors import BadInput, Refused, nearest_of, shown
 from laconic.scene.keys import read_choice, read_number
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_toml
 
 ROLLS_FORWARD_RAD = -math.pi / 2  # the axle of a wheel whose positive speed is forward
 SHORT_FORMS = ("caster", "trailer", "body")
@@ -88,6 +90,19 @@ def has_hinges(vehicle: Any) -> bool:
     steered = isinstance(wheels, list) and any(isinstance(each, Mapping) and ("steered" in each or "body" in each)
                                                for each in wheels)
     return steered or any(vehicle.get(form) for form in SHORT_FORMS)
+
+
+def file_has_hinges(path: Path) -> bool:
+    """Whether a scene file has bodies on hinges; False for a file that is no scene, which its reader refuses."""
+    try:
+        return has_hinges(read_toml(path).peek("vehicle"))
+    except BadInput:
+        return False
+
+
+def rigid_scene_names() -> list[str]:
+    """Names of the scenes without hinges that come with the project."""
+    return [name for name in scene_names() if not file_has_hinges(scene_path(name))]
 
 
 def read_hinges(table: Table, wheels: Sequence[tuple[Table, dict[str, Any]]]) -> Hung:

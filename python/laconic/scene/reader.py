@@ -15,6 +15,7 @@ from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
+from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground
 from laconic.scene.hinge_signals import (
     check_commands,
     check_hinge_signal,
@@ -23,7 +24,6 @@ from laconic.scene.hinge_signals import (
     read_hinge_signals,
 )
 from laconic.scene.hinges import ROLLS_FORWARD_RAD, SHORT_FORMS, Hung, check_not_steered, has_hinges, read_hinges
-from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
 from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
@@ -75,7 +75,8 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), method_names(), reals)
     if parts["run"].get("tolerance") is not None:
-        top.fail("run.step_s", '"auto" is not found for vehicles with hinges yet; give a step in seconds, such as 0.001')
+        top.fail("run.step_s", '"auto" is not found for vehicles with hinges yet; give a step in seconds, such as '
+                 "0.001")
     check_places(top, parts["inputs"])
     for each in parts["inputs"]:
         check_input(top, each, vehicle, parts["run"]["duration_s"])
@@ -98,8 +99,8 @@ def check_start_with_hinges(top: Table, initial: Mapping[str, Any]) -> None:
         top.fail("initial.nu_rad_per_s", "is not a start of a vehicle with hinges; give velocity_body_m_per_s and "
                  "yaw_rate_rad_per_s")
     if "wheel_speed_rad_per_s" in initial:
-        top.fail("initial.wheel_speed_rad_per_s", "follows from the motion, as wheels roll without slip on hinges; take "
-                 "it out")
+        top.fail("initial.wheel_speed_rad_per_s", "follows from the motion, as wheels roll without slip on "
+                 "hinges; take it out")
 
 
 def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:

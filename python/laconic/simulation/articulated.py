@@ -158,8 +158,8 @@ def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> A
     if plant.changed_m_per_s > (ALLOWED if vehicle.core.real == "double" else IN_SINGLE) * max(1.0, size):
         near = plant.motion()
         x, y = near.velocity_m_per_s
-        raise BadInput(f"{scene.path}: initial.velocity_body_m_per_s: this start makes a fixed wheel slide; the nearest "
-                       f"motion that all wheels allow is [{x:.6g}, {y:.6g}] m/s with a yaw rate of "
+        raise BadInput(f"{scene.path}: initial.velocity_body_m_per_s: this start makes a fixed wheel slide; the "
+                       f"nearest motion that all wheels allow is [{x:.6g}, {y:.6g}] m/s with a yaw rate of "
                        f"{near.yaw_rate_rad_per_s:.6g} rad/s")
     return plant
 

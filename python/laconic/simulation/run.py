@@ -134,7 +134,9 @@ def input_signals(scene: Scene) -> tuple[str, ...]:
 def is_watched(scene: Scene) -> bool:
     """Whether the ground is checked: the scene gives its friction, or the height of the centre of mass."""
     vehicle = scene.vehicle
-    return bool(scene.wheel_count and not scene.has_hinges and (vehicle["friction_coefficient"] or vehicle["com_z_m"] or slips(vehicle)))
+    if scene.has_hinges:
+        return False
+    return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"] or slips(vehicle)))
 
 
 @dataclass

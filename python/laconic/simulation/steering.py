@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -81,10 +82,9 @@ class Commands:
         for hinge in self.scene.hinges:
             if hinge.kind == "prescribed" and (f"{ANGLE}[{hinge.name}]" in self._numbers or hinge.has_stops
                                                or math.isfinite(hinge.rate_limit_rad_per_s)):
-                end = min(end, self._until(lambda hinge=hinge: self._follow(hinge, found, given, first), end))
+                end = min(end, self._until(partial(self._follow, hinge, found, given, first), end))
         if self._steering is not None:
-            steering = self._steering
-            end = min(end, self._until(lambda: self._steer(steering, found, given, first), end))
+            end = min(end, self._until(partial(self._steer, self._steering, found, given, first), end))
         return found[: end - first]
 
     def _until(self, follow: Callable[[], None], end: int) -> int:
@@ -232,8 +232,8 @@ class _Steering:
         found = [wheel for wheel in self.scene.vehicle["wheel"] if "body" not in wheel and wheel["kind"] == "fixed"]
         for wheel in found:
             if abs(math.cos(wheel["axle_rad"])) > ACROSS:
-                raise BadInput(f"{self.scene.path}: input: {CURVATURE} and {ANGLE} need fixed wheels that roll along the "
-                               f"first axis (axle_deg = 90 or -90); give {TWIST}")
+                raise BadInput(f"{self.scene.path}: input: {CURVATURE} and {ANGLE} need fixed wheels that roll along "
+                               f"the first axis (axle_deg = 90 or -90); give {TWIST}")
         return float(found[0]["x_m"]) if found else 0.0
 
     def twists(self, given: np.ndarray) -> np.ndarray:
