@@ -238,9 +238,10 @@ class ArticulatedPlant(OwnMemory):
         rows = [each if isinstance(each, np.ndarray) else self.vehicle.input_row(each) for each in (start, end)]
         self.follow(np.array([rows]))
 
-    def follow(self, rows: np.ndarray) -> None:
+    def follow(self, rows: np.ndarray, ramped: bool = True) -> None:
         """One step for each of `rows`, shape (steps, 2, numbers of a row): inputs at its start and end, linear in
-        between. Refused leaves the state before the refused step."""
+        between; not `ramped`: rates and twists have their derivatives in the rows, for a cubic. Refused leaves the
+        state before the refused step."""
         lib, ffi, model, why = self.core.lib, self.core.ffi, self.vehicle.model, self.core.why()
         size = ffi.sizeof("laconic_articulated_input") // self.core.dtype.itemsize
         table = np.ascontiguousarray(rows, self.core.dtype)
@@ -251,7 +252,8 @@ class ArticulatedPlant(OwnMemory):
         ramp, step, h = lib.laconic_articulated_ramp, lib.laconic_articulated_step, self.integrator.step_s
         for at in range(0, 2 * len(table), 2):
             start, end = pairs + at, pairs + at + 1
-            ramp(start, end, h)
+            if ramped:
+                ramp(start, end, h)
             if step(model, self.integrator, self.c, start, end, why) != 0:
                 raise self.core.refusal(why)
             self.steps += 1
