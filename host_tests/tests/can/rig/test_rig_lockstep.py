@@ -5,18 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from laconic.base.paths import scene_names
 from laconic.can.rig.buses import process_node, virtual_node
 from laconic.can.rig.errors import NodeRefused
 from laconic.can.rig.judge import judge_same_bits, judge_scaled
 from laconic.can.rig.lockstep import run_lockstep, twin_states
 from laconic.can.rig.wire import wire
 from laconic.core import REALS
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 
 
 @pytest.mark.parametrize("real", REALS)
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_every_scene_gives_the_bits_of_the_core_over_ten_thousand_steps(name: str, real: str) -> None:
     scene = read_scene(name).with_run(real=real)
     every = 1 if not scene.inputs_on_grid().is_held else 10  # sampled inputs go over the wire step by step
