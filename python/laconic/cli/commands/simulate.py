@@ -120,7 +120,7 @@ def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
 def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
     """The run, to its end or to the step that is refused."""
     try:
-        return simulate(scene, signals, progress=True, estimated=True)
+        return simulate(scene, signals, progress=True, estimated=not scene.has_hinges)
     except RunRefused as cut_short:
         return cut_short.run
 
