@@ -105,7 +105,8 @@ NESTED = """<sdf version="1.9"><world name="w"><model name="made_up"><pose>1 2 3
 UNIT = """<model name="{0}"><pose relative_to="base">0 {1} -0.05 0 0 0.5</pose>
 <link name="hub"><inertial><mass>0.0001</mass></inertial></link>
 <link name="tyre"><pose>0 0 0 0 0 -0.5</pose><inertial><mass>0.5</mass>
-<inertia><ixx>4e-4</ixx><iyy>7e-4</iyy><izz>4e-4</izz></inertia></inertial><collision name="c"><pose degrees="true">0 0 0 90 0 0</pose>
+<inertia><ixx>4e-4</ixx><iyy>7e-4</iyy><izz>4e-4</izz></inertia></inertial>
+<collision name="c"><pose degrees="true">0 0 0 90 0 0</pose>
 <geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry></collision></link>
 <joint name="turn" type="revolute"><parent>hub</parent><child>tyre</child><axis><xyz>0 1 0</xyz></axis></joint>
 <plugin name="drive" filename="libdrive.so"><joint_name>turn</joint_name></plugin></model>
