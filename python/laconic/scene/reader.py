@@ -128,8 +128,6 @@ def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:
     for form in SHORT_FORMS:
         table.has(form)
     table.done(OF_VEHICLES)
-    if hung is not None and not vehicle["wheel_radius_m"] and vehicle["wheel"]:  # all have their own
-        vehicle["wheel_radius_m"] = vehicle["wheel"][0]["radius_m"]
     return vehicle, hung
 
 
