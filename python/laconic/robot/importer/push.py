@@ -21,7 +21,7 @@ FORCES = ("body_force_N[1]", "body_force_N[2]", "body_moment_Nm")
 AHEAD = np.array([1.0, 0.0, 0.0])
 
 Values = dict[str, tuple[float, float]]
-"""By signal: at begin and end of the push, between which they grow in proportion to time, as what damping takes does."""
+"""By signal: at begin and end of the push. Between them they grow with time, as the speed and its damping do."""
 
 
 @dataclass(frozen=True)
