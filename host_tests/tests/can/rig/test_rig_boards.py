@@ -7,7 +7,6 @@ import zlib
 import pytest
 
 from assurance.boards import busy_cores, start
-from laconic.base.paths import scene_names
 from laconic.can.rig.boards import emulated_node, why_no_emulation
 from laconic.can.rig.choices import BOARDS
 from laconic.can.rig.errors import NodeRefused
@@ -15,7 +14,7 @@ from laconic.can.rig.judge import judge_scaled
 from laconic.can.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.can.rig.wire import wire
 from laconic.errors import BadInput, Refused
-from laconic.scene import Scene, read_scene
+from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.scene.ground import has_friction
 from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.tools.report.node_sizes import cost_of
@@ -51,7 +50,7 @@ def rk4_can(scene: Scene) -> bool:
 @pytest.mark.parametrize("name", FULL)
 def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str) -> None:
     with emulated_node(name) as node:
-        for scene_name in scene_names():
+        for scene_name in rigid_scene_names():
             scene = read_scene(scene_name).with_run(real=BOARDS[name].real)
             if name == "microbit" and has_friction(scene.vehicle):  # left out of that image
                 continue
@@ -96,7 +95,7 @@ def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(nam
 
 def test_the_small_image_gives_the_bits_of_the_host_core_with_its_one_method() -> None:
     with emulated_node("an386-small") as node:
-        scenes = [read_scene(n).with_run(real="single", method=EXPLICIT) for n in scene_names()]
+        scenes = [read_scene(n).with_run(real="single", method=EXPLICIT) for n in rigid_scene_names()]
         scenes = [scene for scene in scenes if fits_small_image(scene) and rk4_can(scene)]
         assert len(scenes) >= 3
         for scene in scenes:

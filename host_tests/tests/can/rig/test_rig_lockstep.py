@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from friction_scenes import SCENES, skid_steering, slipping
-from laconic.base.paths import scene_names
 from laconic.can.rig.boards import emulated_node, own_node, why_no_emulation
 from laconic.can.rig.buses import process_node, virtual_node
 from laconic.can.rig.errors import NodeRefused
@@ -20,12 +19,12 @@ from laconic.can.rig.scaled import rounding_limit
 from laconic.can.rig.wire import wire
 from laconic.core import REALS
 from laconic.errors import BadInput
-from laconic.scene import Scene, read_scene
+from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.scene.methods import EXPLICIT
 
 
 @pytest.mark.parametrize("real", REALS)
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_every_scene_gives_the_bits_of_the_core_over_ten_thousand_steps(name: str, real: str) -> None:
     scene = read_scene(name).with_run(real=real)
     every = 1 if not scene.inputs_on_grid().is_held else 10  # sampled inputs go over the wire step by step

@@ -6,9 +6,8 @@ import fmpy.fmi1
 import numpy as np
 import pytest
 
-from laconic.base.paths import scene_names
 from laconic.fmu import make_fmu
-from laconic.scene import METHODS, Scene, read_scene
+from laconic.scene import METHODS, Scene, read_scene, rigid_scene_names
 from laconic.tools.demo.fmu_rows import fmu_rows
 from laconic.tools.demo.main_job import LEAST_STEPS, steps_of
 from laconic.tools.demo.node_rows import node_rows
@@ -38,7 +37,7 @@ def core_of(scene: Scene, kept: dict[str, Rows]) -> Rows:
     return kept[key]
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 @pytest.mark.parametrize("version", [2, 3])
 def test_fmu_gives_the_cores_bits(version, name, tmp_path, expected):
     scene = long_enough(name)
@@ -49,7 +48,7 @@ def test_fmu_gives_the_cores_bits(version, name, tmp_path, expected):
     assert difference(found, core_of(scene, expected), scene.wheel_count) == ""
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_node_over_can_gives_the_cores_bits(name, expected):
     scene = long_enough(name)
     found = node_rows(scene, scene.steps(), NODE_EVERY)
