@@ -285,7 +285,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("input[#].phase_rad", A_NUMBER, "Of a `sine`", 0.0),
     Key("run.duration_s", A_NUMBER, "Length of the run, a whole number of steps", rule=POSITIVE),
     Key("run.step_s", A_NUMBER, 'Internal step, or "auto" with `tolerance`: [found before the run]'
-        "(error-estimate.md#a-step-for-a-tolerance)", rule=POSITIVE),
+        "(accuracy.md#a-step-for-a-tolerance)", rule=POSITIVE),
     Key("run.tolerance", A_NUMBER, 'For step_s = "auto": the largest estimated error that ν, place, heading and wheel '
         "angles may have in the run, in rad/s, m and rad", None, "a step that is given", POSITIVE),
     Key("run.method", TEXT, "See [which method](performance.md#which-method)", "auto"),

@@ -29,7 +29,7 @@ from laconic.core.plant import Plant
 from laconic.scene import Scene, read_scene
 from laconic.scene.methods import EXPLICIT
 
-PAGE = (SOURCE_DIR / "docs" / "play-robomaster.md").read_text(encoding="utf-8")
+PAGE = (SOURCE_DIR / "docs" / "play-drives.md").read_text(encoding="utf-8")
 
 
 class Bench:
@@ -83,7 +83,7 @@ def bench(real: str = "double") -> Iterator[tuple[Bench, can.BusABC]]:
 def controller_of_the_page() -> Any:
     """The class WheelSpeeds, as a reader copies it."""
     names: dict[str, Any] = {}
-    exec(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[0], names)
+    exec(re.search(r"```python\n([^`]*class WheelSpeeds.*?)```", PAGE, re.DOTALL)[1], names)
     return names["WheelSpeeds"]
 
 

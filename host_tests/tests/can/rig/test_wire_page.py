@@ -226,7 +226,7 @@ def test_the_keys_holder_drives_and_nobody_else(key_files: tuple[str, str], caps
 
 
 def test_the_pages_commands_run(key_files: tuple[str, str]):
-    text = (SOURCE_DIR / "docs" / "secure.md").read_text(encoding="utf-8")
+    text = (SOURCE_DIR / "docs" / "rig-ports.md").read_text(encoding="utf-8")
     node, rig = (match.split() for match in re.findall(r"^    (laconic.* --key robot.key)$", text, re.MULTILINE))
     assert node[0] == "laconic-node-double"
     with node_process("double", ID_BASE, *(word.replace("robot.key", key_files[0]) for word in node[1:])) as port:

@@ -58,6 +58,24 @@ def test_every_page_can_be_reached_from_the_readme() -> None:
     assert set((SOURCE_DIR / "docs").glob("*.md")) <= seen
 
 
+def anchors(page: Path) -> set[str]:
+    """The headings of a page as a link names them."""
+    headings = re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"),
+                                                flags=re.DOTALL | re.MULTILINE), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", each.lower()).strip().replace(" ", "-") for each in headings}
+
+
+@pytest.mark.parametrize("page", [SOURCE_DIR / "README.md", SOURCE_DIR / "CONTRIBUTING.md",
+                                  *sorted((SOURCE_DIR / "docs").glob("*.md"))], ids=lambda page: page.name)
+def test_every_link_of_a_page_leads_to_a_file_and_a_heading(page: Path) -> None:
+    links = re.findall(r"\]\(([^)#\s]*)(?:#([^)\s]+))?\)", page.read_text(encoding="utf-8"))
+    local = [(page.parent / target if target else page, anchor) for target, anchor in links if "://" not in target]
+    assert [str(target) for target, _ in local if not target.exists()] == []
+    assert [f"{target.name}#{anchor}" for target, anchor in local
+            if anchor and target.suffix == ".md" and anchor not in anchors(target)] == []
+
+
+
 # ---- docs/glossary.md explains every symbol that pages and headers use, each word once, and names what the code
 # has.
 

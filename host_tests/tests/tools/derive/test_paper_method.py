@@ -344,7 +344,7 @@ def test_every_test_that_the_page_names_exists(name):
 
 @pytest.mark.parametrize("picture", re.findall(r"!\[.*?\]\((.*?)\)", PAGE))
 def test_every_picture_of_the_page_is_there(picture):
-    assert (SOURCE_DIR / "docs" / picture).stat().st_size > 10_000
+    assert (SOURCE_DIR / "docs" / picture).stat().st_size > (1_000 if picture.endswith(".svg") else 10_000)
 
 
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
@@ -353,6 +353,14 @@ def test_every_command_of_the_page_can_be_called_as_it_stands(words):
     context = command.make_context(words[1], list(words[2:]))
     scene = context.params.get("scene")
     assert scene is None or (SCENE_DIR / f"{scene}.toml").exists()
+
+
+def test_each_equation_of_the_page_leads_to_a_function_of_its_file():
+    rows = re.findall(r"^\| (\S.*?) \| .*? \| `(\w+)` in \[\S+\]\((\S+?)\) \| `test_\w+` \|$", PAGE, re.MULTILINE)
+    assert {"(1.2)", "(2.4)", "(4.6)", "(4.7)", "(6.1)"} <= {equation for equation, _, _ in rows}
+    for equation, function, path in rows:
+        text = (SOURCE_DIR / "docs" / path).read_text(encoding="utf-8")
+        assert re.search(rf"^(?:\s*def |\w[\w *]*[ *]){function}\(", text, re.MULTILINE), f"{equation}: {path}"
 
 
 def test_every_erratum_and_the_whole_of_section_5_are_on_the_page():
