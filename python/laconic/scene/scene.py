@@ -17,6 +17,7 @@ from laconic.core.given import shown
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
 from laconic.errors import BadInput, Refused
+from laconic.scene.base import BaseTable
 from laconic.scene.drives import Drives
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.methods import METHODS
@@ -105,6 +106,7 @@ class Scene:
     rig: Rig = field(default_factory=Rig)
     speed_controller: SpeedController | None = None
     sensors: SensorTables = NO_SENSORS
+    base: BaseTable | None = None
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
 
     @property
@@ -243,7 +245,7 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], in_degrees=parts["in_degrees"]))
+        sensors=parts["sensors"], base=parts["base"], in_degrees=parts["in_degrees"]))
 
 
 def with_found_step(scene: Scene) -> Scene:
