@@ -114,6 +114,7 @@ class Single:
         self.held = core.input(None, scene.wheel_count)
         self.counts: np.ndarray | None = None
         self.travel = np.zeros(scene.wheel_count)
+        self.refusal: Refused | None = None  # that is not told yet
         self.grip_told: tuple[int, float] = (0, 0.0)
         self.grip: Any = core.ffi.new("laconic_grip *")
 
@@ -144,13 +145,19 @@ class Singles:
         self.steps += 1
         refusals, run, count, why = [], self.core.lib.laconic_sensors_run, self._count, self._why
         for number, each in enumerate(self.robots):
-            if each.has_refused:
-                continue
-            getattr(each.held, self.geometry.signal)[0:count] = given[:, number].tolist()
-            if run(each.sensors.c, each.plant.c, each.held, 1, why):
-                each.has_refused = True
-                refusals.append((number, self.scene.refusal_in_file(self.core.refusal(why))))
+            if not each.has_refused:
+                getattr(each.held, self.geometry.signal)[0:count] = given[:, number].tolist()
+                if run(each.sensors.c, each.plant.c, each.held, 1, why):
+                    self._stop(each, self.core.refusal(why))
+            if each.refusal is not None:
+                refusals.append((number, each.refusal))
+                each.refusal = None
         return refusals
+
+    def _stop(self, each: Single, refused: Refused) -> None:
+        """Lets a robot stand where it is, without an input."""
+        each.has_refused, each.refusal = True, self.scene.refusal_in_file(refused)
+        each.held = self.core.input(None, self._count)
 
     def speeds(self) -> np.ndarray:
         """As Motion.speeds."""
@@ -166,6 +173,13 @@ class Singles:
     def look(self, robot: int, period_s: float) -> Seen:
         """As Motion.look."""
         each = self.robots[robot]
+        try:
+            return self._look(each)
+        except Refused as refused:  # an output with this input is beyond all numbers
+            self._stop(each, refused)
+            return self._look(each)
+
+    def _look(self, each: Single) -> Seen:
         plant, pose = each.plant, each.plant.pose
         velocity, yaw_rate = plant.body_velocity()
         reading = each.sensors.read(each.held)
