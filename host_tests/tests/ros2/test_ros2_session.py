@@ -326,13 +326,14 @@ def test_a_stop_command_and_silence_after_it_are_no_event() -> None:
         assert rig.lines == []
 
 
-def test_a_command_that_is_not_finite_is_ignored_and_told() -> None:
+@pytest.mark.parametrize("number", [float("nan"), float("-inf"), 1e300])
+def test_a_command_that_is_not_finite_is_ignored_and_told(number: float) -> None:
     with rig_of() as rig:
         rig.drive(20, 0.1)
-        rig.drive(60, float("nan"))
+        rig.drive(60, number)
         assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3  # the watchdog heard nothing new
-        assert [line.partition(": ")[2][:52] for line in rig.lines] == [
-            "a command on cmd_vel has a number that is infinite o", "cmd_vel was silent for 0.5 s, so the robot stops"]
+        assert [line.partition(": ")[2][:47] for line in rig.lines] == [
+            "a command on cmd_vel has a number that is infin", "cmd_vel was silent for 0.5 s, so the robot stop"]
         assert rig.session.told.counts["/laconic: not finite"] == 60
 
 

@@ -21,6 +21,7 @@ UNKNOWN = -1.0                      # first covariance of what a sensor does not
 SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and across, yaw rate, out of the plane
 OK, WARN, ERROR, STALE = range(4)   # levels of diagnostics
 NANO = 10**9
+LARGEST = 1e4                       # m/s or rad/s of a command
 
 # rcl_interfaces/msg/ParameterType
 NOT_SET, BOOL, INTEGER, DOUBLE, STRING = range(5)
@@ -170,9 +171,9 @@ class RobotNode:
     def _obey(self, twist: Any, message: Any, now_s: float) -> None:
         wanted = (twist.linear.x, twist.linear.y, twist.angular.z)
         others = (twist.linear.z, twist.angular.x, twist.angular.y)
-        if not all(map(math.isfinite, (*wanted, *others))):
-            self._tell(now_s, "not finite", "a command on cmd_vel has a number that is infinite or NaN and is ignored; "
-                       "the last one holds until the watchdog")
+        if not all(abs(each) <= LARGEST for each in (*wanted, *others)):  # NaN is not, either
+            self._tell(now_s, "not finite", "a command on cmd_vel has a number that is infinite, NaN or beyond "
+                       f"{LARGEST:g}, and is ignored; the last one holds until the watchdog")
             return
         if any(others):
             self._tell(now_s, "out of plane", "a command on cmd_vel has linear.z, angular.x or angular.y, which a "
