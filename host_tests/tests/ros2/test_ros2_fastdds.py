@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from laconic.base.paths import build_dir
 from laconic.ros2.messages import type_hash
 
@@ -135,3 +136,12 @@ def test_the_robot_stops_when_the_peer_is_gone(peer: Path) -> None:
         summary = ended(process, stop=False)
     assert summary["events"] == {"/laconic: watchdog": 1}
     assert 0.1 < summary["final"]["x_m"] < 0.7
+
+
+def test_none_of_a_thousand_messages_a_second_is_lost(peer: Path) -> None:
+    with robot("--rate", "1000") as process:
+        found = heard(peer, 10.0, "twist")
+        summary = ended(process)
+    assert summary["period_s"] == 0.001
+    for name in ("odom", "tf", "joint_states", "imu"):
+        assert found[name]["count"] > 5000 and found[name]["lost"] == 0, found[name]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
+from cyclonedds.core import DDSException
 from cyclonedds.qos import Policy
 
 import laconic
@@ -533,3 +534,17 @@ def test_a_wrong_map_is_one_line(tmp_path: Path, old: str, new_text: str, messag
     path.write_text(path.read_text().replace(old, new_text))
     with pytest.raises(BadInput, match=re.escape(message)):
         Map.read(path)
+
+
+def test_a_peer_that_does_not_keep_up_costs_messages_and_not_the_run() -> None:
+    class Full:
+        def write(self, _: Any) -> None:
+            raise DDSException(DDSException.DDS_RETCODE_TIMEOUT, "the history is full")
+
+    with rig_of() as rig:
+        rig.drive(10, 0.1)
+        rig.session.robots[0]._imu._writer = Full()
+        rig.turn(120)
+        assert rig.lines[-1].startswith("/laconic: a peer does not keep up, so ")
+        assert rig.session.robots[0].left_out() == 120
+        assert rig.session.cycles == 130

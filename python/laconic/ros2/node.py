@@ -10,17 +10,28 @@ from typing import Any
 from laconic.ros2.base import Base
 from laconic.ros2.messages import Packed, dds_name, new
 from laconic.ros2.motion import GRAVITY_M_PER_S2, Seen
-from laconic.ros2.wire import LATCHED, TRANSFORMS, Node, Participant, polled, ros_type, topic_name
+from laconic.ros2.wire import (
+    LATCHED,
+    TRANSFORMS,
+    USUAL,
+    Node,
+    Participant,
+    Quality,
+    polled,
+    ros_type,
+    sent,
+    topic_name,
+)
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 POSE_STAMPED = "geometry_msgs/msg/PoseWithCovarianceStamped"
 ODOMETRY, TRANSFORM = "nav_msgs/msg/Odometry", "geometry_msgs/msg/TransformStamped"
 NODE_NAME = "laconic"
-FRAMES = {"base": "base_link", "odom": "odom", "map": "map", "imu": "imu_link", "scan": "base_scan"}
 UNKNOWN = -1.0                      # first covariance of what a sensor does not measure
 SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and across, yaw rate, out of the plane
 OK, WARN, ERROR, STALE = range(4)   # levels of diagnostics
 NANO = 10**9
+KEPT_S = 0.25                       # of each topic, for peers that have lost a packet
 LARGEST = 1e4                       # m/s or rad/s of a command
 
 # rcl_interfaces/msg/ParameterType
@@ -71,7 +82,9 @@ class RobotNode:
         self._commands = [self.node.subscription("cmd_vel", kind) for kind in kinds]
         self._command_types = kinds
         self._poses = self.node.subscription("initialpose", POSE_STAMPED) if has_map else None
+        self._stream = Quality(max(USUAL.depth, math.ceil(KEPT_S * rate_Hz)))
         tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
+        self._left_out = 0
         self._publish_all(tf, description)
         self._serve()
 
@@ -79,16 +92,17 @@ class RobotNode:
 
     def _publish_all(self, tf: tuple[str, str], description: str | None) -> None:
         node, frames, wheels = self.node, self.frames, self.base.wheel_count
-        self._odom = OdometryOut(node, "odom", frames["odom"], frames["base"], SURE)
-        self._truth = OdometryOut(node, "ground_truth/odom", frames["map"], frames["base"], 0.0)
+        stream = self._stream
+        self._odom = OdometryOut(node, "odom", frames["odom"], frames["base"], SURE, stream)
+        self._truth = OdometryOut(node, "ground_truth/odom", frames["map"], frames["base"], 0.0, stream)
         names = list(self.base.table.joint_names) or [f"wheel_{number}_joint" for number in range(1, wheels + 1)]
         self.joint_names = names
         joints = new("sensor_msgs/msg/JointState", name=names, position=[0.0] * wheels, velocity=[0.0] * wheels)
-        self._joints = Out(node, "joint_states", "sensor_msgs/msg/JointState", joints)
+        self._joints = Out(node, "joint_states", "sensor_msgs/msg/JointState", joints, stream)
         self._angles, self._speeds = (self._joints.packed.slot(name, f"{wheels}d") for name in ("position", "velocity"))
         imu = new("sensor_msgs/msg/Imu")
         imu.header.frame_id = frames["imu"]
-        self._imu = Out(node, "imu", "sensor_msgs/msg/Imu", imu)
+        self._imu = Out(node, "imu", "sensor_msgs/msg/Imu", imu, stream)
         self._turned = self._imu.packed.slot("orientation.z", "2d")
         self._rate = self._imu.packed.slot("angular_velocity.z", "d")
         self._acceleration = self._imu.packed.slot("linear_acceleration", "3d")
@@ -96,7 +110,8 @@ class RobotNode:
         if self.has_map:
             links.append(transform(frames["map"], frames["odom"]))
         self._tf = Out(node, tf[0], "tf2_msgs/msg/TFMessage", new("tf2_msgs/msg/TFMessage", transforms=links),
-                       TRANSFORMS, stamps=[f"transforms[{number}].header.stamp" for number in range(len(links))])
+                       max(stream, TRANSFORMS, key=lambda each: each.depth),
+                       stamps=[f"transforms[{number}].header.stamp" for number in range(len(links))])
         self._links = [(self._tf.packed.slot(f"transforms[{number}].transform.translation", "2d"),
                         self._tf.packed.slot(f"transforms[{number}].transform.rotation.z", "2d"))
                        for number in range(len(links))]
@@ -293,6 +308,19 @@ class RobotNode:
 
     # ---- diagnostics
 
+    def left_out(self) -> int:
+        """Messages that could not be sent because a peer does not keep up."""
+        outs = (self._odom.out, self._truth.out, self._tf, self._joints, self._imu, self._battery)
+        return sum(each.left_out for each in outs if each is not None)
+
+    def report(self, now_s: float) -> None:
+        """Tells the user of messages that were left out since the last report."""
+        count = self.left_out()
+        if count > self._left_out:
+            self._tell(now_s, "left out", f"a peer does not keep up, so {count - self._left_out} messages were left "
+                       "out")
+        self._left_out = count
+
     def status(self, refusal: str, slipping: str, late: int) -> Any:
         """The robot's diagnostic_msgs/DiagnosticStatus."""
         is_limited, counts = bool(self.base.limited[self.robot]), self.told.counts
@@ -305,6 +333,7 @@ class RobotNode:
         own = f"{self.node.full_name}: "
         values = {"commands": self.command.count, "late cycles": late,
                   **{event.removeprefix(own): count for event, count in counts.items() if event.startswith(own)}}
+        values["messages left out"] = self.left_out()
         pairs = [new("diagnostic_msgs/msg/KeyValue", key=key, value=str(value)) for key, value in values.items()]
         return new("diagnostic_msgs/msg/DiagnosticStatus", level=level, name=f"{self.node.full_name}: base",
                    message=message, hardware_id=self.base.scene.name, values=pairs)
@@ -313,29 +342,30 @@ class RobotNode:
 class Out:
     """A publisher of a packed message with a stamp."""
 
-    def __init__(self, node: Node, topic: str, kind: str, message: Any, *quality: Any,
+    def __init__(self, node: Node, topic: str, kind: str, message: Any, quality: Quality = USUAL,
                  stamps: Sequence[str] = ("header.stamp",)):
         self.packed = Packed(kind, message)
-        self._write, self._message = node.publisher(topic, kind, *quality).write, self.packed.message
+        self._writer, self._message = node.publisher(topic, kind, quality), self.packed.message
         self._stamps = [self.packed.slot(path, "iI") for path in stamps]
+        self.left_out = 0
 
     def write(self, stamp: tuple[int, int]) -> None:
         """Sends it as it is now."""
         for each in self._stamps:
             each.put(*stamp)
-        self._write(self._message)
+        self.left_out += not sent(self._writer, self._message)
 
 
 class OdometryOut:
     """A publisher of nav_msgs/Odometry."""
 
-    def __init__(self, node: Node, topic: str, frame: str, child: str, variance: float):
+    def __init__(self, node: Node, topic: str, frame: str, child: str, variance: float, quality: Quality):
         message = new(ODOMETRY, child_frame_id=child)
         message.header.frame_id = frame
         if variance:
             for part in (message.pose, message.twist):
                 part.covariance[0::7] = [SURE, SURE, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, UNSURE]
-        self.out = Out(node, topic, ODOMETRY, message)
+        self.out = Out(node, topic, ODOMETRY, message, quality)
         self._place = self.out.packed.slot("pose.pose.position", "2d")
         self._turn = self.out.packed.slot("pose.pose.orientation.z", "2d")
         self._velocity = self.out.packed.slot("twist.twist.linear", "2d")

@@ -16,11 +16,12 @@ import numpy as np
 from laconic.base.outputs import opened
 from laconic.base.text_file import text_of_file
 from laconic.errors import BadInput, ResultFails
+from laconic.ros2 import FRAMES, USUAL_DISTRIBUTION
 from laconic.ros2.base import Base
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
-from laconic.ros2.node import FRAMES, NANO, RobotNode, Told, diagnostics
-from laconic.ros2.wire import USUAL_DISTRIBUTION, Participant, check_name
+from laconic.ros2.node import NANO, RobotNode, Told, diagnostics
+from laconic.ros2.wire import Participant, check_name, sent
 from laconic.scene import Scene
 from laconic.scene.scene_text import lines_of
 from laconic.scene.table import read_toml
@@ -144,7 +145,7 @@ class Session:
         if self._clock_out is not None:
             message = new("rosgraph_msgs/msg/Clock")
             message.clock.sec, message.clock.nanosec = divmod(self.time_ns, NANO)
-            self._clock_out.write(message)
+            sent(self._clock_out, message)
         self.cycles += 1
         self._housekeeping(now_s)
 
@@ -178,7 +179,9 @@ class Session:
             self._look_at_graph(now_s)
         if self._is_due("diagnostics", now_s, DIAGNOSTICS_S):
             late = self.lateness.late
-            self._diagnostics.write(diagnostics(
+            for robot in self.robots:
+                robot.report(now_s)
+            sent(self._diagnostics, diagnostics(
                 (robot.status(self.refusals.get(number, ""), self.base.motion.grip(number), late)
                  for number, robot in enumerate(self.robots)), self.time_ns))
 

@@ -22,14 +22,12 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from laconic.errors import BadInput
+from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION, WITHOUT_HASHES
 from laconic.ros2.messages import message_class, type_hash
 
-GID_BYTES = {"humble": 24, "iron": 16, "jazzy": 16, "kilted": 16, "lyrical": 16, "rolling": 16}
-"""Distributions, and the bytes of a Gid in their graph; hashes of types are announced since Iron, too."""
-DISTRIBUTIONS = tuple(GID_BYTES)
-USUAL_DISTRIBUTION = "jazzy"
 MOST_DOMAIN = 232  # beyond it the ports of UDP end
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
 MOST_AT_ONCE = 64  # messages of one reader in one poll
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
@@ -75,7 +73,7 @@ class Participant:
         if not 0 <= domain <= MOST_DOMAIN:
             raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
         self.gid_bytes, self.domain = GID_BYTES[distribution], domain
-        self.has_hashes, self.announces = distribution != "humble", announces
+        self.has_hashes, self.announces = distribution not in WITHOUT_HASHES, announces
         try:
             if is_local and domain not in _DOMAINS:
                 _DOMAINS[domain] = Domain(domain, THIS_MACHINE)
@@ -117,7 +115,7 @@ class Participant:
         history = Policy.History.KeepLast(quality.depth)
         policies = [
             history, Policy.DataRepresentation(use_cdrv0_representation=True),
-            Policy.Reliability.Reliable(duration(milliseconds=100)),
+            Policy.Reliability.Reliable(MOST_WAIT),
             Policy.Durability.TransientLocal if quality.is_latched else Policy.Durability.Volatile]
         if kind is DataWriter:
             policies.append(Policy.WriterDataLifecycle(autodispose=False))
@@ -143,7 +141,7 @@ class Participant:
             "rmw_dds_common/msg/NodeEntitiesInfo", node_namespace=node.namespace, node_name=node.name,
             reader_gid_seq=[self.gid(each) for each in node.readers],
             writer_gid_seq=[self.gid(each) for each in node.writers]) for node in self.nodes]
-        self._graph.write(self.message("rmw_dds_common/msg/ParticipantEntitiesInfo", gid=self.gid(self.dds),
+        sent(self._graph, self.message("rmw_dds_common/msg/ParticipantEntitiesInfo", gid=self.gid(self.dds),
                                        node_entities_info_seq=nodes))
 
     def namesakes(self) -> set[str]:
@@ -235,7 +233,7 @@ class Service:
         count = 0
         for request in polled(self.reader, lambda: wrong(f"{self.name}: a request that cannot be read is ignored")):
             values = self.answer(request)
-            self.writer.write(self._respond(client=request.client, sequence=request.sequence, **values))
+            sent(self.writer, self._respond(client=request.client, sequence=request.sequence, **values))
             count += 1
         return count
 
@@ -256,6 +254,15 @@ def polled(reader: Any, wrong: Callable[[], None] = lambda: None, most: int = MO
         if hasattr(taken[0], "__idl__"):  # no news of a writer that has gone
             found.append(taken[0])
     return found
+
+
+def sent(writer: Any, message: Any) -> bool:
+    """Writes a message; False where a reader does not keep up, so that the message is left out."""
+    try:
+        writer.write(message)
+    except DDSException:
+        return False
+    return True
 
 
 def ros_type(name: str) -> str:

@@ -179,12 +179,12 @@ int main(int count, char **word) {
     Heard<sensor_msgs::msg::dds_::Imu_> imu;
     Heard<rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_> graph;
     const char *odometry = "nav_msgs::msg::dds_::Odometry_", *transforms = "tf2_msgs::msg::dds_::TFMessage_";
-    peer.hear(TYPE(nav_msgs, Odometry), "rt/odom", odometry, odom, 10);
-    peer.hear(TYPE(nav_msgs, Odometry), "rt/ground_truth/odom", odometry, truth, 10);
-    peer.hear(TYPE(tf2_msgs, TFMessage), "rt/tf", transforms, tf, 100);
+    peer.hear(TYPE(nav_msgs, Odometry), "rt/odom", odometry, odom, 1000);
+    peer.hear(TYPE(nav_msgs, Odometry), "rt/ground_truth/odom", odometry, truth, 1000);
+    peer.hear(TYPE(tf2_msgs, TFMessage), "rt/tf", transforms, tf, 1000);
     peer.hear(TYPE(tf2_msgs, TFMessage), "rt/tf_static", transforms, fixed, 1, true);
-    peer.hear(TYPE(sensor_msgs, JointState), "rt/joint_states", "sensor_msgs::msg::dds_::JointState_", joints, 10);
-    peer.hear(TYPE(sensor_msgs, Imu), "rt/imu", "sensor_msgs::msg::dds_::Imu_", imu, 10);
+    peer.hear(TYPE(sensor_msgs, JointState), "rt/joint_states", "sensor_msgs::msg::dds_::JointState_", joints, 1000);
+    peer.hear(TYPE(sensor_msgs, Imu), "rt/imu", "sensor_msgs::msg::dds_::Imu_", imu, 1000);
     peer.hear(TYPE(rmw_dds_common, ParticipantEntitiesInfo), "ros_discovery_info",
               "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", graph, 1, true);
     const char *twist = "geometry_msgs::msg::dds_::Twist_", *stamped = "geometry_msgs::msg::dds_::TwistStamped_";

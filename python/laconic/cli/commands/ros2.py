@@ -11,18 +11,16 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, json_flag, one_of
 from laconic.errors import BadInput, ResultFails
+from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION
 from laconic.scene import METHODS, read_scene
 
 if TYPE_CHECKING:
     from laconic.ros2.session import Session
 
-DISTRIBUTIONS = ("humble", "iron", "jazzy", "kilted", "lyrical", "rolling")
-
 
 @click.command("ros2")
 @click.argument("scene_name", type=SceneName(), metavar="SCENE")
-@click.option("--distro", "distribution", type=click.Choice(DISTRIBUTIONS), default="jazzy", show_default=True,
-              help="Distribution of the peers: form of the graph, hashes of types.")
+@one_of("--distro", tuple(GID_BYTES), "Distribution of the peers, instead of ROS_DISTRO or jazzy")
 @click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
 @click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
@@ -48,8 +46,8 @@ DISTRIBUTIONS = ("humble", "iron", "jazzy", "kilted", "lyrical", "rolling")
 @one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @json_flag("Machine-readable summary.")
-def command(scene_name: str, domain: int | None, is_silent: bool, method: str | None, step_s: float | None,
-            json_wanted: bool, **given: Any) -> int:
+def command(scene_name: str, distro: str | None, domain: int | None, is_silent: bool, method: str | None,
+            step_s: float | None, json_wanted: bool, **given: Any) -> int:
     """Runs the robot of SCENE as a ROS 2 node: cmd_vel in; odom, tf, joint_states, imu … out.
 
     A controller as bases have one turns velocities into voltages, and odom is what its encoders make of the motion;
@@ -60,15 +58,15 @@ def command(scene_name: str, domain: int | None, is_silent: bool, method: str | 
 
     check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s)
-    options = Ros2Options(domain=domain_of(domain), announces=not is_silent, **given)
+    options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent, **given)
 
     def say(text: str) -> None:
         click.echo(text, err=json_wanted)
 
     began, cpu = time.perf_counter(), time.process_time()
     with Session(scene, options, say) as session:
-        say(introduction(session))
         try:
+            say(introduction(session))
             session.run()
         except KeyboardInterrupt:
             say("stopped by the user")
@@ -81,6 +79,12 @@ def command(scene_name: str, domain: int | None, is_silent: bool, method: str | 
     if session.refusals:
         raise ResultFails(next(iter(session.refusals.values())))
     return 0
+
+
+def distribution_of(given: str | None) -> str:
+    """The distribution of the command line, or that of the environment where it is known."""
+    of_environment = os.environ.get("ROS_DISTRO", "")
+    return given or (of_environment if of_environment in GID_BYTES else USUAL_DISTRIBUTION)
 
 
 def domain_of(given: int | None) -> int:
@@ -101,8 +105,9 @@ def introduction(session: Session) -> str:
     kind = "TwistStamped" if options.is_stamped else "Twist or TwistStamped"
     more = f" (and those of {len(robots) - 1} more)" if robots[1:] else ""
     stamps = f"simulated time at {options.speed:g} times" if options.is_sim_time else "the system's time"
+    torques = "" if session.base.loop.signal == "voltage_V" else "; has no motors, so torques drive its wheels"
     return (f"{session.scene.name}: {robots[0].node.full_name} in domain {options.domain}, {options.rate_Hz:g} Hz, "
-            f"{stamps}; hears {kind} on {topic}{more}\n"
+            f"{stamps}; hears {kind} on {topic}{more}{torques}\n"
             f"drive it: ros2 topic pub -r 10 {topic} geometry_msgs/msg/{kind.partition(' ')[0]} ... ; stop with Ctrl-C")
 
 
