@@ -113,6 +113,7 @@ TABLES = {
     "sensors.encoder": "An encoder at each wheel.",
     "speed_controller": "What turned set speeds of the wheels into currents on a recorded robot; for "
                         "`laconic replay --inputs set-speeds` alone. Needs `[vehicle.motor]`.",
+    "base": "Controller, limits and beliefs of a mobile base; for [`laconic ros2`](ros2.md) alone.",
     "rig": "What a CAN bus needs to know; for `laconic rig` and `laconic play`.",
     "rig.drives": f"The motor drives between a controller's bus and the wheels; {PLAY}."}
 """Every table of a scene, in the order of the reference."""
@@ -285,7 +286,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("input[#].phase_rad", A_NUMBER, "Of a `sine`", 0.0),
     Key("run.duration_s", A_NUMBER, "Length of the run, a whole number of steps", rule=POSITIVE),
     Key("run.step_s", A_NUMBER, 'Internal step, or "auto" with `tolerance`: [found before the run]'
-        "(error-estimate.md#a-step-for-a-tolerance)", rule=POSITIVE),
+        "(accuracy.md#a-step-for-a-tolerance)", rule=POSITIVE),
     Key("run.tolerance", A_NUMBER, 'For step_s = "auto": the largest estimated error that ν, place, heading and wheel '
         "angles may have in the run, in rad/s, m and rad", None, "a step that is given", POSITIVE),
     Key("run.method", TEXT, "See [which method](performance.md#which-method)", "auto"),
@@ -309,6 +310,26 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
                                                       "speeds s of the wheels", rule=POSITIVE),
     Key("speed_controller.integral_gain_A_per_rad", A_NUMBER, "I of it", 0.0, rule=NOT_NEGATIVE),
     Key("speed_controller.dead_time_s", A_NUMBER, "From the set speed to the current", 0.0, rule=NOT_NEGATIVE),
+    Key("base.gain_Vs_per_rad", A_NUMBER, "P of a wheel's voltage P (set − s) + I ∫(set − s) dt, with its speed s",
+        None, "from the inertia that a wheel turns", POSITIVE),
+    Key("base.integral_gain_V_per_rad", A_NUMBER, "I of it", None, "from P and the motor's damping", NOT_NEGATIVE),
+    Key("base.voltage_limit_V", A_NUMBER, "Largest voltage of a motor", None, "`vehicle.drive.supply_V`, else none",
+        POSITIVE),
+    Key("base.gain_Nms_per_rad", A_NUMBER, "The same for a vehicle without motors, which torques drive", None,
+        "from the inertia that a wheel turns", POSITIVE),
+    Key("base.integral_gain_Nm_per_rad", A_NUMBER, "I of it", None, "from P", NOT_NEGATIVE),
+    Key("base.torque_limit_Nm", A_NUMBER, "Largest torque at an axle", None, "none", POSITIVE),
+    Key("base.speed_limit_m_per_s", A_NUMBER, "Largest speed that a command sets", None, "none", POSITIVE),
+    Key("base.yaw_rate_limit_rad_per_s", A_NUMBER, "Largest yaw rate that a command sets", None, "none", POSITIVE),
+    Key("base.acceleration_limit_m_per_s2", A_NUMBER, "How fast the set velocity changes", None, "at once", POSITIVE),
+    Key("base.yaw_acceleration_limit_rad_per_s2", A_NUMBER, "How fast the set yaw rate changes", None, "at once",
+        POSITIVE),
+    Key("base.watchdog_s", A_NUMBER, "The base stops after so long without a command", 0.5, rule=POSITIVE),
+    Key("base.believed_size", A_NUMBER, "Distances of the wheels as the base believes them, over the true ones", 1.0,
+        rule=POSITIVE),
+    Key("base.believed_radius_m", "number, or list with one for each wheel",
+        "Wheel radii as the base believes them, for its set speeds and its odometry", None, "the true ones", POSITIVE),
+    Key("base.joint_names", "list of texts", "Of the wheels, as in the robot's URDF", (), "wheel_1_joint …"),
     Key("rig.id_base", "whole number", "First CAN identifier of the node", None, "the node's own", range="0 to 0x7FF"),
     Key("rig.frames", "list of texts", "Frames of [the wire](wire.md) that the node sends", (), "the usual ones"),
     Key("rig.drives.protocol", TEXT, "What the drives speak", None, "that of `--drives`", choices=PROTOCOLS),

@@ -176,7 +176,7 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
 
     Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. `progress`: says on
     stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps;
-    `estimated`: estimates the run's error (docs/error-estimate.md), with friction at three times the cost.
+    `estimated`: estimates the run's error (docs/accuracy.md), with friction at three times the cost.
     Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
     is refused or the outputs at the end leave the range of numbers, has the motion up to there.
     """

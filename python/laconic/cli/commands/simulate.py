@@ -57,9 +57,8 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
     gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
     would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
-    the exit status is 1. The estimated error of the steps and of rounding is told at the end: see
-    docs/error-estimate.md. --enclose proves what the true motion of the file's numbers is, as intervals: see
-    docs/enclosures.md.
+    the exit status is 1. The estimated error of the steps and of rounding is printed at the end. --enclose proves
+    intervals that contain the exact motion of the file's numbers. See docs/accuracy.md.
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
