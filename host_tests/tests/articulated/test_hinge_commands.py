@@ -127,7 +127,7 @@ def elsewhere(tmp_path: Path) -> dict[str, list[str]]:
             "replay": [str(log), "SCENE"], "identify": [str(log), "--scene", "SCENE", "-o", str(tmp_path / "f.toml")],
             "optimise": ["SCENE", "--free", "vehicle.mass_kg=1:2", "--goal", "min speed"],
             "sweep": ["SCENE", "--vary", "vehicle.mass_kg=1:2:3", "-o", str(tmp_path / "sweep")],
-            "report": ["--scene", "SCENE"], "demo": ["SCENE"]}
+            "report": ["--scene", "SCENE"], "demo": ["SCENE"], "ros2": ["SCENE"]}
 
 
 def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> None:
@@ -139,7 +139,7 @@ def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("command", ["analyse", "derive", "fmu", "trim", "rig", "play", "replay", "identify",
-                                     "optimise", "sweep", "report", "demo"])
+                                     "optimise", "sweep", "report", "demo", "ros2"])
 @pytest.mark.parametrize("name", ["f1tenth", "mir_like", "tugger_train", "wheel_loader"])
 def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, name: str, tmp_path: Path,
                                                                 capsys: pytest.CaptureFixture[str]) -> None:
