@@ -105,7 +105,10 @@ def test_modules_that_nothing_coordinates_are_refused_with_the_remedy() -> None:
     for wheel in tables["vehicle"]["wheel"]:
         wheel |= {"steered": "motor", "steering_gain_Nm_per_V": 1.0}
         del wheel["rate_limit_rad_per_s"]
-    fails(tables, "coordinated hinges")
+    fails(tables, "vehicle: ", "coordinated hinges")
+    with pytest.raises(BadInput) as why:
+        simulate(build_scene(tables))
+    assert "ground" not in str(why.value)  # whose friction does not act here
     for wheel, angle in zip(tables["vehicle"]["wheel"], (0.0, 0.1, 0.2, 0.3), strict=True):
         del wheel["steering_gain_Nm_per_V"]
         wheel |= {"steered": "prescribed", "start_angle_rad": angle}
@@ -119,7 +122,7 @@ def test_two_commands_of_coordinated_wheels_and_a_twist_of_nothing_are_refused()
     for wheel in car["vehicle"]["wheel"][2:]:
         for key in ("rate_limit_rad_per_s", "stop_low_rad", "stop_high_rad"):
             del wheel[key]
-    fails(car | {"input": held(steering_twist__1=1.0, steering_twist__2=0.5)}, "fixed wheels of the carriage slide")
+    fails(car | {"input": held(steering_twist__1=1.0, steering_twist__2=0.5)}, "steering_twist: ", "fixed wheels of the carriage slide")
 
 
 def test_curvature_angle_and_twist_steer_a_car_alike() -> None:

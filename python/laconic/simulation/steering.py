@@ -295,8 +295,11 @@ class _Steering:
 
     def unit(self, twist: np.ndarray) -> np.ndarray:
         """The twist of size 1, lengths over the vehicle's; 0 stays 0."""
-        size = float(np.linalg.norm(twist * (1.0, 1.0, self._size_m)))
-        return twist / size if size > 0.0 else np.zeros(3)
+        largest = float(np.abs(twist).max())
+        if not 0.0 < largest < math.inf:
+            return np.zeros(3)
+        scaled = twist / largest
+        return np.asarray(scaled / np.linalg.norm(scaled * (1.0, 1.0, self._size_m)))
 
     def _directions(self, twist: np.ndarray) -> np.ndarray:
         """Velocity at each hinge as a complex number."""
