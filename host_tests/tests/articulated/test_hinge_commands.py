@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -40,6 +41,22 @@ def test_simulate_writes_columns_of_hinges_and_a_picture(tmp_path: Path, capsys:
     summary = json.loads(text)
     assert summary["chosen"] == "auto" and summary["limited"] == [] and summary["no_slip"]["holds"]
     assert summary["final"]["hinge_angle_rad[front]"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["tugger_train", "f1tenth"])
+def test_a_film_moves_every_body_and_turns_every_wheel(name: str, tmp_path: Path,
+                                                       capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.svg"
+    assert told(["simulate", name, "--film", str(path)], capsys)[0] == 0
+    film, scene = path.read_text(encoding="utf-8"), laconic.read_scene(name)
+    ElementTree.fromstring(film)
+    for number in range(1, len(scene.hinges) + 1):
+        assert f"@keyframes b{number} " in film and film.count(f'class="m b{number}"') == 1
+    for number in range(1, scene.wheel_count + 1):
+        assert film.count(f'class="m w{number}"') == 1
+    end = laconic.simulate(scene, ["body_x_m", "body_y_m"])
+    x, y = (float(end.columns[f"{axis}[{scene.hinges[0].name}]"][-1]) for axis in ("body_x_m", "body_y_m"))
+    assert f"animation-name: b1; transform: translate({x:.4f}px, {y:.4f}px)" in film
 
 
 def test_every_output_of_a_scene_with_hinges_can_be_asked_for(tmp_path: Path) -> None:
@@ -150,7 +167,7 @@ def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, n
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
 
 
-@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"], ["--film", "x.svg"]])
+@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"]])
 def test_options_of_simulate_that_know_no_hinges_are_refused(option: list[str], tmp_path: Path,
                                                             monkeypatch: pytest.MonkeyPatch,
                                                             capsys: pytest.CaptureFixture[str]) -> None:
