@@ -122,7 +122,8 @@ def test_two_commands_of_coordinated_wheels_and_a_twist_of_nothing_are_refused()
     for wheel in car["vehicle"]["wheel"][2:]:
         for key in ("rate_limit_rad_per_s", "stop_low_rad", "stop_high_rad"):
             del wheel[key]
-    fails(car | {"input": held(steering_twist__1=1.0, steering_twist__2=0.5)}, "steering_twist: ", "fixed wheels of the carriage slide")
+    aside = held(steering_twist__1=1.0, steering_twist__2=0.5)
+    fails(car | {"input": aside}, "steering_twist: ", "fixed wheels of the carriage slide")
 
 
 def test_curvature_angle_and_twist_steer_a_car_alike() -> None:
