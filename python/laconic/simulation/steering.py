@@ -43,14 +43,6 @@ class Limited:
                 f"first at {self.first_s:g} s")
 
 
-class _AtLimit(Exception):
-    """A command beyond a limit whose hinge refuses it, in a step."""
-
-    def __init__(self, step: int, refused: Refused):
-        super().__init__(step)
-        self.step, self.refused = step, refused
-
-
 @dataclass
 class Commands:
     """The rows of inputs of a run, in order; `limited` fills as they are made, `refused` says what ends the run."""
@@ -67,6 +59,7 @@ class Commands:
         self._plain = [(at, self.vehicle.slot(signal)) for signal, at in self._numbers.items()
                        if signal.partition("[")[0] not in (ANGLE, CURVATURE)]
         self._steering = _Steering(self.scene, self._numbers) if self.vehicle.is_coordinated else None
+        self._ends = 0  # the step that a limit refuses
         self._twist: np.ndarray | None = None
         self._stuck: tuple[np.ndarray, Hinge, str, float, float] | None = None  # the target of a hinge at its stop
 
@@ -98,10 +91,10 @@ class Commands:
         """The step before which commands can be followed."""
         try:
             follow()
-        except _AtLimit as limit:
-            if limit.step < end:
-                self.refused = limit.refused
-            return limit.step
+        except Refused as refused:
+            if self._ends < end:
+                self.refused = refused
+            return self._ends
         return end
 
     def row_at(self, tick: int, before: np.ndarray | None) -> np.ndarray:
@@ -159,10 +152,11 @@ class Commands:
         time_s = step * self.inputs.step_s
         if hinge.refuses:
             unit = "rad/s" if what == "rate" else "rad"
-            raise _AtLimit(step, Refused(
+            self._ends = step
+            raise Refused(
                 "limit of a hinge", f"hinge_{what}", 0, f"{self.scene.path}: at t = {time_s:g} s: {hinge.place} "
                 f"({hinge.name}): the command asks for {value:.6g} {unit}, the limit of its {what} is {limit:.6g} "
-                f"{unit}; command less, or give at_limit = \"saturate\"", value=value, limit=limit))
+                f"{unit}; command less, or give at_limit = \"saturate\"", value=value, limit=limit)
         found = self.limited.setdefault((hinge.name, what), Limited(hinge.name, what, time_s))
         found.steps += 1
 
