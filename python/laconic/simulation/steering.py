@@ -127,6 +127,11 @@ class Commands:
         slot, h = self.vehicle.slot(f"{RATE}[{hinge.name}]"), self.inputs.step_s
         column = self._numbers.get(f"{ANGLE}[{hinge.name}]")
         angle, most = self._angle[hinge.name], hinge.rate_limit_rad_per_s
+        rates = rows[:, :, slot] if column is None else _held_rates(angle, given[:, 1, column], h)
+        ends = angle + 0.5 * h * np.cumsum(rates.sum(axis=1))
+        if len(ends) and np.abs(rates).max() <= most and hinge.low_rad <= ends.min() and ends.max() <= hinge.high_rad:
+            rows[:, :, slot], self._angle[hinge.name] = rates, float(ends[-1])  # no limit holds it back
+            return
         for k in range(len(rows)):
             if column is None:
                 wanted = rows[k, :, slot]
@@ -167,6 +172,8 @@ class Commands:
         if not steering.is_limited:
             return
         slot, h = self.vehicle.slot(TWIST), self.inputs.step_s
+        if self._steer_freely(steering, rows[:, :, slot : slot + 3], h):
+            return
         for k in range(len(rows)):
             target, now = steering.unit(rows[k, 1, slot : slot + 3]), self._twist
             if now is None or not np.any(target):
@@ -176,6 +183,23 @@ class Commands:
             for hinge, turn in zip(steering.hinges, steering.turns(now, reached), strict=True):
                 self._angle[hinge.name] += float(turn)
             self._twist = reached
+
+    def _steer_freely(self, steering: _Steering, twists: np.ndarray, h: float) -> bool:
+        """Takes all twists of some steps as they are commanded, if no limit holds one of them back."""
+        wanted = [steering.unit(twist) for twist in twists[:, 1]]
+        if self._twist is None or not all(map(np.any, wanted)):
+            return False
+        way = np.array([self._twist, *wanted])
+        turns = steering.turns(way[:-1], way[1:])
+        now = np.array([self._angle[hinge.name] for hinge in steering.hinges])
+        angles = now + np.cumsum(turns, axis=0)
+        if (np.abs(turns) > h * steering.rates).any() or (angles > steering.highs).any() or \
+                (angles < steering.lows).any():
+            return False
+        twists[:, 0], twists[:, 1], self._twist = way[:-1], way[1:], way[-1]
+        for hinge, angle in zip(steering.hinges, angles[-1], strict=True):
+            self._angle[hinge.name] = float(angle)
+        return True
 
     def _start_twist(self, steering: _Steering, given: np.ndarray) -> np.ndarray:
         """The twist at the start: the given one, or as near to it from straight ahead as the stops allow."""
@@ -240,6 +264,11 @@ class Commands:
         return hinge, "angle", angles[at], hinge.high_rad if turns[at] > 0.0 else hinge.low_rad
 
 
+def _held_rates(angle: float, targets: np.ndarray, h: float) -> np.ndarray:
+    """Rates, held over each step, that reach all targets one after the other, (steps, 2)."""
+    return np.repeat(np.diff(targets, prepend=angle)[:, None] / h, 2, axis=1)
+
+
 class _Steering:
     """How the scene's inputs make a twist, and the twist the angles of coordinated hinges."""
 
@@ -296,9 +325,10 @@ class _Steering:
         return np.asarray(scaled / np.linalg.norm(scaled * (1.0, 1.0, self._size_m)))
 
     def _directions(self, twist: np.ndarray) -> np.ndarray:
-        """Velocity at each hinge as a complex number."""
+        """Velocity at each hinge as a complex number, for one twist or many."""
         x, y = self.places.T
-        return np.asarray((twist[0] - twist[2] * y) + 1j * (twist[1] + twist[2] * x))
+        ahead, aside, yaw = (twist[..., [i]] for i in range(3))
+        return np.asarray((ahead - yaw * y) + 1j * (aside + yaw * x))
 
     def angles(self, twist: np.ndarray) -> Sequence[float]:
         """Angle of each hinge in (−π, π]."""
