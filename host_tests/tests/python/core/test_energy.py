@@ -11,7 +11,7 @@ import pytest
 
 from laconic.core import Vehicle
 
-CAMPAIGN = next(folder for folder in Path(__file__).parents if (folder / "assurance").is_dir()) / "assurance/energy.py"
+CAMPAIGN = next(path for folder in Path(__file__).parents if (path := folder / "assurance/energy.py").is_file())
 KEPT = {"double": 1e-9, "single": 1e-4}
 KEEPERS = ("auto", "exact-flow", "exact-flow-4")
 
