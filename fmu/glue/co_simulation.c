@@ -53,7 +53,8 @@ static fmu_status check_interval(const fmu_instance *instance, double at_s, doub
     if (!(step_s > 0.0))
         return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must be more than 0", step_s);
     if (!(off_s <= most_s && off_s >= -most_s))
-        return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
+        return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s: %.2g s apart", at_s,
+                          now_s, off_s);
     if (fmu_clock_passes_stop(clock, now_s + step_s, internal_s))
         return fmu_refuse(instance, "the step from %.15g s to %.15g s goes beyond the stop time %.15g s", now_s,
                           now_s + step_s, clock->stop_s);

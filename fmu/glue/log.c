@@ -58,18 +58,19 @@ static unsigned category_bit(const char *name) {
 }
 
 /* No categories mean all. FMI 2: `on` selects these and no others, off none. FMI 3: `on` adds these, off removes
- * them. */
+ * them. A category of another FMU is ignored with a warning: an importer may have one list for all of its FMUs. */
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
     unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
+    fmu_status status = FMU_OK;
     if (count > 0 && names == NULL)
         return fmu_refuse(instance, "SetDebugLogging: %zu categories and no list of them", count);
     for (size_t k = 0; k < count; k++) {
         const unsigned bit = category_bit(names[k]);
         if (bit == 0)
-            return fmu_refuse(instance,
-                              "SetDebugLogging: there is no category '%s'; use logStatusWarning, "
-                              "logStatusDiscard, logStatusError or logEvents",
-                              names[k] != NULL ? names[k] : "(null)");
+            status = fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
+                             "SetDebugLogging: there is no category '%s', which is ignored; use logStatusWarning, "
+                             "logStatusDiscard, logStatusError or logEvents",
+                             names[k] != NULL ? names[k] : "(null)");
         wanted |= bit;
     }
     if (instance->version == 2)
@@ -78,5 +79,5 @@ fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const 
         instance->log_categories |= wanted;
     else
         instance->log_categories &= ~wanted;
-    return FMU_OK;
+    return status;
 }

@@ -284,6 +284,16 @@ def test_without_a_step_of_its_own_the_model_takes_no_step_from_somewhere_else(v
 
 
 @BOTH
+def test_a_step_from_somewhere_else_says_how_far_where_both_times_have_the_same_digits(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize(1e12)
+        assert importer.step(1e12, 0.57) == OK
+        assert importer.step(1e12 + 0.573, 0.57) == ERROR
+        said = importer.log[-1][2]
+        assert "the step starts at 1000000000000.57 s, but the model is at 1000000000000.57 s: 0.0031 s apart" in said  # ulps of 1e12
+
+
+@BOTH
 def test_what_an_importer_loses_by_adding_up_its_time_for_hours_is_no_step_from_somewhere_else(version: int) -> None:
     with Importer(generic(version)) as importer:
         importer.initialize()
