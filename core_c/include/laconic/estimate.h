@@ -1,5 +1,5 @@
 /* Error estimate of a run: how far the numbers of a plant are from the true motion of its equations.
- * docs/error-estimate.md derives it and has measured figures.
+ * docs/accuracy.md derives it and has measured figures.
  *
  *     laconic_estimate_start(&estimate, &plant, 16, laconic_finer_method(&plant), &why);
  *     laconic_estimate_run(&estimate, &plant, &input, 1000, &why);    the bits of laconic_plant_run

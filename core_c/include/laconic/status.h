@@ -39,7 +39,7 @@
       "than two correct digits; check the units") \
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
       "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
-    X(METHOD_UNKNOWN, "method unknown", \
+    X(METHOD_UNKNOWN, "method unknown", /* limit: how many there are for vehicles with hinges; 0 for all others */ \
       "there is no such method; use $") \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
       "the interval is no whole number of steps of # s; use @ s") \

@@ -112,6 +112,9 @@ static size_t end_text(const writer *w) {
 
 #define METHOD_NAME(number, identifier, name, order, TAKES, KEEPS, NEEDS, title) LACONIC_METHOD_WITH_##NEEDS(name, )
 
+/* As laconic_articulated_method_name() has them: that part is linked only where it is called. */
+#define METHODS_WITH_HINGES "auto, rk4, circle or moebius-4"
+
 /* All in the order of the numbers, "or" before the last. */
 static void put_method_names(writer *w) {
     static const char *const names[] = {LACONIC_METHODS(METHOD_NAME)};
@@ -146,6 +149,8 @@ static void put_explanation(writer *w, const laconic_refusal *why) {
             put_number(w, why->value, count);
         else if (*c == '@')
             put_number(w, why->limit, count);
+        else if (*c == '$' && why->limit > R(0))
+            put_text(w, METHODS_WITH_HINGES);
         else if (*c == '$')
             put_method_names(w);
         else

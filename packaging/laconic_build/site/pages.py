@@ -15,17 +15,15 @@ from laconic_build.site.scene_reference import scene_page
 PICTURES = (".png", ".svg", ".gif")
 MADE_LATER = re.compile(r"^\.|^__pycache__$|\.egg-info$|^(build|dist)\b")  # what a folder's list leaves out
 LINK = re.compile(r"(!?\[[^\]\n]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
-GROUPS = {
-    "Learn": ("tutorial",),
-    "How to": ("how-to", "import", "scenes", "python", "c", "fmu", "fmu-fmpy", "fmu-simulink", "fmu-openmodelica",
-               "fmu-dymola", "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep",
-               "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "secure", "play", "play-canopen",
-               "play-odrive", "play-robomaster", "play-moteus", "logs", "sweep", "page", "release"),
-    "Explanation": ("performance", "soft-double", "batch", "learn", "derivatives", "control", "optimise",
-                    "assurance", "enclosures", "error-estimate", "integrators", "friction", "sensors",
-                    "real-robots", "paper", "architecture", "manual", "glossary"),
-    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
-                  "reference-fmi", "wire", "changelog"),
+GROUPS = {  # the parts of the manual, in the order in which a reader needs them
+    "Start": ("tutorial", "how-to"),
+    "Guides": ("scenes", "import", "sensors", "fmu-importers", "fmu", "fmu-network", "rig", "rig-ports",
+               "play", "play-drives", "logs", "control", "c", "python", "sweep", "batch", "page"),
+    "Reference": ("reference-commands", "reference-scene", "signals", "reference-c", "reference-python",
+                  "reference-fmi", "wire", "glossary"),
+    "Theory": ("paper", "integrators", "friction", "accuracy"),
+    "How far it is checked": ("assurance", "performance"),
+    "For developers": ("architecture", "changelog"),
 }
 
 

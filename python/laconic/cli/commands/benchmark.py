@@ -53,8 +53,7 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     soft-double: additions in double precision by soft_double.c and by libgcc on an emulated Cortex-M4F, and a step of
     scene s1 with either.
 
-    codes: what docs/secure.md costs, a key and the code of a frame (AES-128 CMAC), on an emulated Cortex-M4F, with two
-    keys.
+    codes: a key and the code of a frame (AES-128 CMAC, docs/rig-ports.md) on an emulated Cortex-M4F, with two keys.
     """
     from laconic.tools.report.many.race import stay_on_one_core
 

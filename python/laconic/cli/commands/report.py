@@ -10,10 +10,10 @@ import click
 from rich.console import Console
 
 from laconic.base.outputs import make_folder
-from laconic.base.paths import results_dir, scene_names
+from laconic.base.paths import results_dir
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, reason_of
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 
 
 @click.command("report")
@@ -37,7 +37,7 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     from laconic.tools.report.writing import write
 
     folder = out or results_dir("report")
-    read = [read_scene(name) for name in scenes or scene_names()]
+    read = [read_scene(name) for name in scenes or rigid_scene_names()]
     try:
         make_folder(folder)
         report = (collect_robots if scenes else collect)(read, folder / "work", quick)
