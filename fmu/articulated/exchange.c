@@ -1,4 +1,4 @@
-/* The continuous states of a vehicle with hinges, slopes of its inputs, and what it does not have: partial derivatives. */
+/* The continuous states of a vehicle with hinges, slopes of its inputs, and what it lacks: partial derivatives. */
 #include "parts.h"
 
 /* Calls `visit` for each list of states in the order of the description. */

@@ -21,7 +21,7 @@ void fmu_model_made(fmu_model *model) { (void)model; /* all vehicles have the sa
 
 /* ------------------------------------------------------------------------------------- start -- */
 
-/* Without step_s, Co-Simulation knows its internal step only at its first communication step, and Model Exchange never. */
+/* Without step_s, Co-Simulation knows its internal step only at its first communication step, Model Exchange never. */
 static laconic_status prepare(fmu_model *self, laconic_refusal *why) {
     const bool knows_step = self->step_s != 0.0 && !self->continuous;
     const laconic_status status = laconic_articulated_prepare(&self->prepared, &self->vehicle, why);
@@ -46,6 +46,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "this vehicle cannot start");
     if (fmu_articulated_check_start(instance, change_m_per_s) != FMU_OK) return FMU_ERROR;
     mark_as_started(self);
+    fmu_articulated_check_idle(instance);
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUP_PLACE);
     return FMU_OK;
 }
@@ -132,6 +133,7 @@ void fmu_model_input_changed(fmu_instance *instance) {
         return;
     }
     self->stale |= FMU_GROUPS_OF_INPUT;
+    fmu_articulated_check_idle(instance);
     if (!self->continuous || !commands_differ(&self->input, &self->commanded)) return;
     if (instance->mode == FMU_EVENT)
         self->change_needed = self->jump_needed = true;

@@ -1,5 +1,5 @@
-/* A vehicle with hinges as an FMU model: parameters and inputs as the importer set them, the core's articulated vehicle,
- * and outputs that are computed when they are read. Plain data. */
+/* A vehicle with hinges as an FMU model: parameters and inputs as the importer set them, the core's articulated
+ * vehicle, and outputs that are computed when they are read. Plain data. */
 #ifndef LACONIC_FMU_ARTICULATED_MODEL_H
 #define LACONIC_FMU_ARTICULATED_MODEL_H
 

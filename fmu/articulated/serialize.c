@@ -1,5 +1,5 @@
-/* All members of the fmu_model of a vehicle with hinges to and from bytes. Prepared constants are not stored but prepared
- * again, which gives the same bits. */
+/* All members of the fmu_model of a vehicle with hinges to and from bytes. Prepared constants are not stored but
+ * prepared again, which gives the same bits. */
 #include "parts.h"
 
 #define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
