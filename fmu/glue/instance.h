@@ -22,6 +22,9 @@
 #include "lifecycle.h"
 #include "model.h"
 
+/* Start values and tolerances would be off by 1e-7 or 0. */
+typedef char fmu_needs_compiling_without_fsingle_precision_constant[sizeof(1.0) == sizeof(double) ? 1 : -1];
+
 typedef enum fmu_status { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } fmu_status;
 
 typedef enum fmu_kind { FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION } fmu_kind;
