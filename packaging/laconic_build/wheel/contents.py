@@ -12,6 +12,7 @@ from pathlib import Path
 BUILT = "laconic/_built"
 PACKAGES = {"laconic": "python/laconic", "laconic_fmu": "python/laconic_fmu"}
 READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
+                    "fmu/articulated/modelDescription.xml",
                     "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc",
                     "core_c/include/laconic/methods.h")
 GIVEN_OUT = ("core_c/optional/soft_double",)  # by `laconic core`
@@ -21,7 +22,8 @@ LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in 
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
 DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
 FMUS = (*(f"{name}_fmi{version}.fmu"
-          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicController") for version in (2, 3)),
+          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated", "LaconicController")
+          for version in (2, 3)),
         *(f"{name}_fmi3.fmu" for name in ("LaconicNode", "LaconicCanBus", "LaconicCanController")))
 
 
