@@ -81,7 +81,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.MULTILINE)
 @cache
 def included(path: Path, folders: tuple[str, ...]) -> tuple[Path, ...]:
     """What a file of the project includes itself."""
-    places = [[Path(folder, name) for folder in (path.parent, *folders)]
+    places = [[Path(folder) / name for folder in (str(path.parent), *folders)]
               for name in INCLUDE.findall(path.read_text(encoding="utf-8", errors="replace"))]
     found = [next((place for place in each if place.is_file()), None) for each in places]
     return tuple(place.resolve() for place in found if place)

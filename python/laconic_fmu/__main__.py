@@ -8,8 +8,8 @@ from pathlib import Path
 
 from . import archive, fmi2, fmi3
 from .description import parse, read, token_in, token_of, with_token
+from .enumerations import missing_variable
 from .estimate import with_estimate, without_estimate
-from .field_list import missing_variable
 from .for_vehicle import for_vehicle
 from .licences import licence_parts, ziglang_in
 from .method_list import differing_item, methods_in, with_items
