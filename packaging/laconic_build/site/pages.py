@@ -7,9 +7,7 @@ import shutil
 from pathlib import Path
 
 from laconic_build.site.c_reference import c_page
-from laconic_build.site.command_reference import command_page
-from laconic_build.site.fmi_reference import fmi_page
-from laconic_build.site.python_reference import python_page
+from laconic_build.site.references import command_page, fmi_page, python_page
 from laconic_build.site.scene_reference import scene_page
 
 PICTURES = (".png", ".svg", ".gif")

@@ -144,8 +144,7 @@ def signals_to_enclose(scene: Scene) -> tuple[str, ...]:
 
 def enclosed(run: Trajectory) -> Enclosure:
     """Encloses the motion of a run, and gives the run its columns."""
-    from laconic.tools.enclosure.study import study_of
-    from laconic.tools.enclosure.tables import as_json, columns_of, lines_of
+    from laconic.tools.enclosure.study import as_json, columns_of, lines_of, study_of
 
     study = study_of(run)
     columns = columns_of(study)
