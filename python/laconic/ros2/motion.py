@@ -59,6 +59,9 @@ class Motion(Protocol):
     def place(self, robot: int, x_m: float, y_m: float, heading_rad: float) -> None:
         """At rest with the body frame at a pose."""
 
+    def has_refused(self, robot: int) -> bool:
+        """Whether a step of a robot was refused since it was last placed."""
+
     def grip(self, robot: int) -> str:
         """What the ground could not give since the last question, in words; empty where nothing is wrong."""
 
@@ -215,6 +218,10 @@ class Singles:
         moved = replace(self.scene, initial=self.geometry.start(x_m, y_m, heading_rad))
         self.robots[robot] = Single(moved, self.core)
 
+    def has_refused(self, robot: int) -> bool:
+        """As Motion.has_refused."""
+        return self.robots[robot].has_refused
+
     def grip(self, robot: int) -> str:
         """As Motion.grip."""
         each = self.robots[robot]
@@ -285,6 +292,10 @@ class Lanes:
         start = self.geometry.start(x_m, y_m, heading_rad)
         self.batch.start(robot, x_m=start.x_m, y_m=start.y_m, heading_rad=start.heading_rad)
         self._told[robot], self._before[robot] = False, (0.0, 0.0, 0.0)
+
+    def has_refused(self, robot: int) -> bool:
+        """As Motion.has_refused."""
+        return bool(self._told[robot])
 
     def grip(self, robot: int) -> str:
         """As Motion.grip: a batch does not watch the ground."""

@@ -99,6 +99,8 @@ class Session:
         self.refusals: dict[int, str] = {}
         self.lateness, self.cycles, self.time_ns = Lateness(), 0, 0
         self.map = Map.read(options.map_file) if options.map_file else None
+        self._parent, self._frames = check_name("--namespace", options.namespace), frames_of(options.frames)
+        self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
         self.participant = Participant(options.domain, options.distribution, is_local=options.is_local,
                                        announces=options.announces)
         self.robots = [self._robot(number) for number in range(options.robots)]
@@ -111,10 +113,9 @@ class Session:
         self._offset_ns = self.clock.wall_ns() - round(self.clock.now_s() * NANO)
 
     def _robot(self, number: int) -> RobotNode:
-        options, parent = self.options, check_name("--namespace", self.options.namespace)
+        options, parent, text = self.options, self._parent, self._description
         namespace = parent if options.robots == 1 else f"{parent.rstrip('/')}/robot{number + 1}"
-        text = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
-        node = RobotNode(self.participant, self.base, number, namespace=namespace, frames=frames_of(options.frames),
+        node = RobotNode(self.participant, self.base, number, namespace=namespace, frames=self._frames,
                          is_sim_time=options.is_sim_time, is_stamped=options.is_stamped,
                          has_map=options.is_loopback or self.map is not None, shares_tf=options.shares_tf,
                          told=self.told, rate_Hz=options.rate_Hz, description=text)
@@ -170,11 +171,11 @@ class Session:
 
     def _housekeeping(self, now_s: float) -> None:
         if self._is_due("services", now_s, HOUSEKEEPING_S):
-            for number, robot in enumerate(self.robots):
-                before = self.base.motion.steps, robot.told.counts.copy()
+            for robot in self.robots:
                 robot.answer(now_s)
-                if before[1] != robot.told.counts:
-                    self.refusals.pop(number, None)
+            for number in [*self.refusals]:
+                if not self.base.motion.has_refused(number):  # it was reset or placed
+                    del self.refusals[number]
         if self._is_due("graph", now_s, GRAPH_S):
             self._look_at_graph(now_s)
         if self._is_due("diagnostics", now_s, DIAGNOSTICS_S):
