@@ -103,6 +103,15 @@ class Session:
         self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
         self.participant = Participant(options.domain, options.distribution, is_local=options.is_local,
                                        announces=options.announces)
+        try:
+            self._join()
+        except BaseException:
+            self.participant.close()
+            raise
+
+    def _join(self) -> None:
+        """Makes the nodes, and tells the graph of them."""
+        options = self.options
         self.robots = [self._robot(number) for number in range(options.robots)]
         shared = self.participant.nodes[0]
         self._diagnostics = shared.publisher("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
