@@ -14,6 +14,7 @@ import pytest
 import laconic
 from laconic.base.extras import extra_of
 from laconic.cli.main import run
+from laconic.ros2.session import Session
 
 LOCAL = ["--local", "--domain", "79"]
 
@@ -59,6 +60,18 @@ def test_the_environment_names_domain_and_distribution(monkeypatch: pytest.Monke
     monkeypatch.setenv("ROS_DOMAIN_ID", "home")
     assert run(["ros2", "robotino2", "--local"]) == 2
     assert "ROS_DOMAIN_ID: home is not a whole number" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words, of_environment, services", [
+    ([], "", True), (["--rmw", "fastrtps"], "", False), ([], "rmw_fastrtps_cpp", False), ([], "rmw_other", True),
+    (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True)])
+def test_services_are_left_out_for_a_middleware_that_cannot_call_them(
+        words: list[str], of_environment: str, services: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RMW_IMPLEMENTATION", of_environment)
+    made: list[Session] = []
+    monkeypatch.setattr(Session, "run", lambda session: made.append(session))
+    assert run(["ros2", "robotino2", *LOCAL, *words]) == 0
+    assert bool(made[0].robots[0].node.services) == services
 
 
 def test_without_its_package_the_extra_is_named() -> None:

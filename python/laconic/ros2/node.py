@@ -70,7 +70,8 @@ class RobotNode:
 
     def __init__(self, participant: Participant, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
                  is_sim_time: bool, is_stamped: bool, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
-                 description: str | None = None):
+                 description: str | None = None,
+                 has_services: bool = True):
         self.base, self.robot, self.told = base, robot, told
         self.node: Node = participant.node(NODE_NAME, namespace)
         prefix = f"{namespace.strip('/')}/" if shares_tf and namespace != "/" else ""
@@ -86,7 +87,8 @@ class RobotNode:
         tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
         self._left_out = 0
         self._publish_all(tf, description)
-        self._serve()
+        if has_services:
+            self._serve()
 
     # ---- publishers
 

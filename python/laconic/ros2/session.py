@@ -50,6 +50,7 @@ class Ros2Options:
     speed: float = 1.0
     is_stamped: bool = False
     announces: bool = True
+    has_services: bool = True
     is_local: bool = False
     shares_tf: bool = False
     frames: Sequence[str] = ()
@@ -127,7 +128,8 @@ class Session:
         node = RobotNode(self.participant, self.base, number, namespace=namespace, frames=self._frames,
                          is_sim_time=options.is_sim_time, is_stamped=options.is_stamped,
                          has_map=options.is_loopback or self.map is not None, shares_tf=options.shares_tf,
-                         told=self.told, rate_Hz=options.rate_Hz, description=text)
+                         told=self.told, rate_Hz=options.rate_Hz, description=text,
+                         has_services=options.has_services)
         if text is not None and number == 0:
             lacking = [name for name in node.joint_names if f'"{name}"' not in text]
             if lacking:
