@@ -24,7 +24,8 @@ from laconic.ros2.maps import Map
 from laconic.ros2.messages import new, type_hash
 from laconic.ros2.session import Ros2Options, Session, write_record
 from laconic.ros2.wire import LATCHED, USUAL, Participant, Quality, check_name, polled, ros_type
-from laconic.scene import read_scene
+from laconic.scene import build_scene, read_scene
+from laconic.scene.scene_tables import scene_tables
 from ros2_support import DOMAIN, WALL_NS, last, rig_of
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -591,3 +592,14 @@ def test_an_imported_robot_has_the_joints_of_its_urdf(tmp_path: Path) -> None:
         joints = last(reader)
         assert list(joints.name) == ["left", "right"] and rig.lines == []
         assert min(joints.velocity) > 3.0  # the joints turn about +y, so ahead is positive
+
+
+def test_on_a_slope_the_imu_shows_gravity_along_and_across_the_ground() -> None:
+    tables = scene_tables("skid_steer").entries
+    tables["ground"]["slope_deg"] = 10.0
+    with rig_of(build_scene(tables)) as rig:
+        reader = rig.node.subscription("imu", "sensor_msgs/msg/Imu")
+        rig.turn(20)
+        felt = last(reader).linear_acceleration
+        assert (felt.x, felt.z) == pytest.approx((9.80665 * math.sin(math.radians(10.0)),
+                                                  9.80665 * math.cos(math.radians(10.0))), rel=1e-3)

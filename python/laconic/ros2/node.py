@@ -85,6 +85,8 @@ class RobotNode:
         self._poses = self.node.subscription("initialpose", POSE_STAMPED) if has_map else None
         self._stream = Quality(max(USUAL.depth, math.ceil(KEPT_S * rate_Hz)))
         tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
+        slope_rad = base.scene.vehicle.get("ground", {}).get("slope_rad", 0.0)
+        self._upward = GRAVITY_M_PER_S2 * math.cos(slope_rad)  # what the ground's support shows, across it
         self._left_out = 0
         self._publish_all(tf, description)
         if has_services:
@@ -153,7 +155,7 @@ class RobotNode:
         self.heading_rad += rate * period_s
         self._turned.put(math.sin(0.5 * self.heading_rad), math.cos(0.5 * self.heading_rad))
         self._rate.put(rate)
-        self._acceleration.put(ahead, left, GRAVITY_M_PER_S2)
+        self._acceleration.put(ahead, left, self._upward)
         self._imu.write(stamp)
         self.messages += 5
         if self._battery is not None and seen.supply is not None:
