@@ -228,6 +228,19 @@ def test_scenes_without_a_base_table_have_none() -> None:
     assert laconic.read_scene("robotino2").base is None
 
 
+def test_a_locked_wheel_does_not_count_in_the_odometry() -> None:
+    tables = scene_tables("optiodom_omni4").with_values({"vehicle.wheel[4].locked": True})
+    tables.entries.pop("input", None)
+    base = Base(tables.scene())
+    start = base.look()[0]
+    driven(base, 2.0, 0.1, 0.1, 0.2)
+    seen, believed = base.look()[0], base.odometry[0]
+    assert base.motion.measured.tolist() == [True, True, True, False]
+    assert believed.heading_rad == pytest.approx(seen.heading_rad, abs=1e-6)
+    assert math.hypot(believed.x_m, believed.y_m) == pytest.approx(math.hypot(seen.x_m - start.x_m,
+                                                                              seen.y_m - start.y_m), abs=1e-4)
+
+
 @pytest.mark.parametrize("name", laconic.scene_names())
 def test_every_scene_drives(name: str) -> None:
     base = Base(read_scene(name))

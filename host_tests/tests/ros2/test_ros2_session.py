@@ -85,6 +85,15 @@ def test_stamped_hears_no_plain_twist() -> None:
                              "TwistStamped"]
 
 
+def test_unstamped_has_one_type_on_the_topic() -> None:
+    with rig_of(is_stamped=False) as rig:
+        readers = BuiltinDataReader(rig.peer.dds, BuiltinTopicDcpsSubscription).take(N=500)
+        types = {each.type_name for each in readers if getattr(each, "topic_name", "") == "rt/cmd_vel"}
+        assert types == {"geometry_msgs::msg::dds_::Twist_"}
+        rig.drive(60, 0.1)
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
+
+
 def test_who_comes_late_gets_what_is_latched(tmp_path: Path) -> None:
     urdf = tmp_path / "robot.urdf"
     urdf.write_text('<robot name="r"><joint name="wheel_left_joint"/><joint name="wheel_right_joint"/></robot>')
@@ -250,6 +259,13 @@ def test_a_machine_that_sleeps_is_told_and_not_made_up_for() -> None:
         assert rig.session.cycles == 50
         assert rig.lines == ["the machine was 30 s too late for a cycle; the robot's time stood still meanwhile"]
         assert rig.session.lateness.skipped_s == pytest.approx(30.0)
+
+
+def test_a_long_run_prints_a_line_each_minute() -> None:
+    with rig_of(rate_Hz=10.0, duration_s=130.0) as rig:
+        rig.session.run()
+        assert rig.lines == [f"{seconds} s of the robot's time: 0 commands heard, 0 cycles late"
+                             for seconds in (60, 120)]
 
 
 @pytest.mark.parametrize("jump_s", [-3600.0, 10.0])

@@ -74,6 +74,11 @@ def motion_of(scene: Scene, robots: int) -> Motion:
     return Singles(scene, robots)
 
 
+def turning(scene: Scene) -> np.ndarray:
+    """Which wheels have an encoder where the scene gives none: those that a motor turns."""
+    return np.array([bool(wheel["driven"] and not wheel["locked"]) for wheel in scene.vehicle["wheel"]])
+
+
 class Geometry:
     """Numbers of a scene that both kinds of motion need."""
 
@@ -132,8 +137,7 @@ class Singles:
         self.rows, self.steps, self._count = self.geometry.rows, 0, scene.wheel_count
         encoder = scene.sensors.encoder
         counts = (encoder or {}).get("counts_per_turn", ())
-        self.measured = np.array([bool(each) for each in counts] if encoder else
-                                 [wheel["driven"] for wheel in scene.vehicle["wheel"]])
+        self.measured = np.array([bool(each) for each in counts]) if encoder else turning(scene)
         gears = (encoder or {}).get("gear_ratio", [1.0] * self._count)
         self._per_count = np.array([2.0 * math.pi / (count * gear) if count else 0.0
                                     for count, gear in zip(counts, gears, strict=True)]) if encoder else None
@@ -244,7 +248,7 @@ class Lanes:
         self.geometry = Geometry(scene, self.plant)
         self.batch = Batch(Vehicle.of(scene), robots, scene.run.method, scene.run.step_s)
         self.rows, self.steps = self.geometry.rows, 0
-        self.measured = np.array([wheel["driven"] for wheel in scene.vehicle["wheel"]])
+        self.measured = turning(scene)
         self._start = self.plant.save()
         self._before: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0)] * robots
         self._told = np.zeros(robots, bool)

@@ -69,7 +69,7 @@ class RobotNode:
     """One robot of a base as a node."""
 
     def __init__(self, participant: Participant, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
-                 is_sim_time: bool, is_stamped: bool, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
+                 is_sim_time: bool, is_stamped: bool | None, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
                  description: str | None = None,
                  has_services: bool = True):
         self.base, self.robot, self.told = base, robot, told
@@ -78,7 +78,7 @@ class RobotNode:
         self.frames = {name: frame if name == "map" else prefix + frame for name, frame in frames.items()}
         self.command, self.watchdog_s, self.heading_rad = Command(), base.table.watchdog_s, 0.0
         self.has_map, self.is_sim_time, self.rate_Hz, self.messages = has_map, is_sim_time, rate_Hz, 0
-        kinds = [TWIST_STAMPED] if is_stamped else [TWIST, TWIST_STAMPED]
+        kinds = {None: [TWIST, TWIST_STAMPED], True: [TWIST_STAMPED], False: [TWIST]}[is_stamped]
         self.command_topic = topic_name("rt", namespace, "cmd_vel")
         self._commands = [self.node.subscription("cmd_vel", kind) for kind in kinds]
         self._command_types = kinds

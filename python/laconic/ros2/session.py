@@ -29,6 +29,7 @@ from laconic.scene.table import read_toml
 HOUSEKEEPING_S = 0.02    # between looks for requests
 GRAPH_S = 0.5            # between looks at the graph
 DIAGNOSTICS_S = 1.0
+LINE_S = 60.0            # between lines of a long run
 CATCH_UP_S = 0.2         # a loop that is later gives up what it has missed
 JUMP_S = 0.1             # of the system's clock against the monotonic one
 MOST_LATENESS = 100_000  # that are kept
@@ -48,7 +49,7 @@ class Ros2Options:
     rate_Hz: float = 50.0                 # noqa: N815
     is_sim_time: bool = False
     speed: float = 1.0
-    is_stamped: bool = False
+    is_stamped: bool | None = None        # None: both kinds of command
     announces: bool = True
     has_services: bool = True
     is_local: bool = False
@@ -120,6 +121,7 @@ class Session:
         self.scanner = Scanner(self.map, self.robots) if self.map else None
         self.participant.announce()
         self._next_s = dict.fromkeys(("services", "graph", "diagnostics"), -math.inf)
+        self._next_s["line"] = LINE_S + (0.0 if options.is_sim_time else self.clock.now_s())
         self._offset_ns = self.clock.wall_ns() - round(self.clock.now_s() * NANO)
 
     def _robot(self, number: int) -> RobotNode:
@@ -196,6 +198,11 @@ class Session:
             sent(self._diagnostics, diagnostics(
                 (robot.status(self.refusals.get(number, ""), self.base.motion.grip(number), late)
                  for number, robot in enumerate(self.robots)), self.time_ns))
+
+        if self._is_due("line", now_s, LINE_S):
+            commands = sum(robot.command.count for robot in self.robots)
+            self.say(f"{self.cycles * self.period_s:.0f} s of the robot's time: {commands} commands heard, "
+                     f"{self.lateness.late} cycles late")
 
     def _look_at_graph(self, now_s: float) -> None:
         for name in self.participant.namesakes():

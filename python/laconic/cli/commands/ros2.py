@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 @click.option("--rate", "rate_Hz", type=float, default=50.0, metavar="HZ", show_default=True, help="Of all topics.")
 @click.option("--sim-time", "is_sim_time", is_flag=True, help="Stamps of simulated time, and /clock.")
 @click.option("--speed", type=float, default=1.0, help="With --sim-time: seconds of the robot in a real one.")
-@click.option("--stamped", "is_stamped", is_flag=True, help="Hear TwistStamped alone on cmd_vel, not Twist, too.")
+@click.option("--stamped/--unstamped", "is_stamped", default=None,
+              help="Hear TwistStamped alone, or Twist alone, on cmd_vel.  [default: both]")
 @click.option("--frame", "frames", multiple=True, metavar="NAME=FRAME",
               help="Another name of the frame base, odom, map, imu or scan.")
 @click.option("--shared-tf", "shares_tf", is_flag=True, help="/tf for all, with the namespace before each frame.")
@@ -111,7 +112,7 @@ def introduction(session: Session) -> str:
     """How to drive it, in two lines."""
     options, robots = session.options, session.robots
     topic = robots[0].command_topic.removeprefix("rt")
-    kind = "TwistStamped" if options.is_stamped else "Twist or TwistStamped"
+    kind = {None: "Twist or TwistStamped", True: "TwistStamped", False: "Twist"}[options.is_stamped]
     more = f" (and those of {len(robots) - 1} more)" if robots[1:] else ""
     stamps = f"simulated time at {options.speed:g} times" if options.is_sim_time else "the system's time"
     torques = "" if session.base.loop.signal == "voltage_V" else "; has no motors, so torques drive its wheels"
