@@ -45,7 +45,8 @@ def python_page() -> str:
 
 # ---- The variables of the FMUs, from their descriptions.
 
-DESCRIPTIONS = {"Rigid vehicles": "modelDescription.xml", "Vehicles with hinges": "fmu/articulated/modelDescription.xml"}
+DESCRIPTIONS = {"Rigid vehicles": "modelDescription.xml",
+                "Vehicles with hinges": "fmu/articulated/modelDescription.xml"}
 HEAD = "| variable | unit or type | start | description |\n| --- | --- | --- | --- |"
 
 

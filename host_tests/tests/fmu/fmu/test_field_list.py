@@ -11,7 +11,7 @@ import pytest
 from laconic.base.paths import SOURCE_DIR
 from laconic.core import load
 from laconic.fmu import DESCRIPTION
-from laconic_fmu.enumerations import rows_in
+from laconic_fmu.field_list import rows_in
 
 LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "vehicle.h"
 OF_SENSORS = LIST.with_name("sensors.h")
