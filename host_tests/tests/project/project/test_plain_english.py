@@ -1,7 +1,7 @@
 """Pages in plain English: short sentences, and none of the words that readers had to read twice.
 
-`python test_plain_english.py` prints pages, words, mean words of a sentence and the share of long ones. Tables, code and
-headings do not count. The lists may never force a worse sentence: change them when they do.
+`python test_plain_english.py` prints words, mean words of a sentence and the share of long ones for each page. Tables,
+code and headings do not count. The lists may never force a worse sentence: change them when they do.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ WORDS = {  # what is not written: what is written instead
     r"\btaken again\b|\bwhole core\b": "repeated; full build",
     r"\bit is the .* that\b|\bnone of it\b": "subject – verb – object",
 }
+END = re.compile(r"(?<=[.?!])(?:[\")])*\s+(?=[\"(]?[A-ZΑ-Ω0-9])")
 OPENINGS = ("Of", "What", "Whoever", "Who", "That", "Where", "By", "Beside", "Besides")
 
 
@@ -51,7 +52,7 @@ def blocks(text: str) -> list[str]:
 
 def sentences(text: str) -> list[str]:
     """Each sentence that has a word."""
-    parts = [part for block in blocks(text) for part in re.split(r"(?<=[.?!])(?:[\")])*\s+(?=[\"(]?[A-ZΑ-Ω0-9])", block)]
+    parts = [part for block in blocks(text) for part in END.split(block)]
     return [part for part in parts if re.search(r"\w", part)]
 
 
