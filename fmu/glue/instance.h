@@ -73,6 +73,8 @@ struct fmu_instance {
     uint32_t warnings_given;         /* bit per warning that was logged in this run */
     uint32_t warnings_pending;       /* bit per warning of a step that may still be refused */
     fmu_between_steps between_steps; /* NULL: no intermediate updates */
+    volatile bool running;           /* a communication step of several internal ones      */
+    volatile bool cancelled;         /* another thread wants it to end: models look at it now and then */
     fmu_clock clock;
     fmu_model model;
     fmu_model initial;      /* right after instantiation, for reset                        */
@@ -130,6 +132,11 @@ fmu_status fmu_apply_parameters(fmu_instance *instance);
 fmu_status fmu_log(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...)
     FMU_LIKE_PRINTF(4, 5);
 fmu_status fmu_refuse(const fmu_instance *instance, const char *format, ...) FMU_LIKE_PRINTF(2, 3);
+/* For the %.*g of one line: 15 digits, or as many more as show which of three numbers differ. */
+int fmu_digits(double a, double b, double c);
+/* Of a communication step: it begins at another time than the model's; it ends beyond the stop time. */
+fmu_status fmu_refuse_start(const fmu_instance *instance, double at_s, double now_s);
+fmu_status fmu_refuse_end(const fmu_instance *instance, double from_s, double to_s);
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const categories[]);
 
 /* --------------------------------------------------------------------------------- variables -- */
@@ -248,6 +255,8 @@ typedef struct fmu_step_end {
 } fmu_step_end;
 
 fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end);
+/* Makes the communication step that runs in another thread end soon; DoStep takes it back and discards it. */
+fmu_status fmu_cancel_step(fmu_instance *instance);
 
 /* ------------------------------------------------------------- continuous states (Model Exchange) -- */
 

@@ -11,6 +11,9 @@
 /* A larger quotient is no number of steps: laconic_steps_in refuses it. */
 #define MOST_STEPS 9e15
 
+/* Internal steps between two looks at whether the importer cancels them: well below a second. */
+#define SLICE_STEPS 1024U
+
 /* These do not compile unless the core computes in double and a wheel_kind can be read as an int32_t. */
 typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
 typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
@@ -232,11 +235,12 @@ fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double o
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
     if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
     const double nearest = nearest_step(instance, step_s, own_s);
+    const int digits = fmu_digits(step_s, nearest, nearest);
     if (nearest > 0.0)
         return fmu_refuse(instance,
-                          "the communication step of %.15g s is no whole number of internal steps of %.15g s "
-                          "(step_s); nearest that is: %.15g s",
-                          step_s, own_s, nearest);
+                          "the communication step of %.*g s is no whole number of internal steps of %.15g s "
+                          "(step_s); nearest that is: %.*g s",
+                          digits, step_s, own_s, digits, nearest);
     return fmu_refuse(instance,
                       "the communication step of %.15g s cannot be taken in internal steps of %.15g s (step_s): "
                       "set another step_s before the run",
@@ -268,7 +272,7 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
     fmu_model *self = &instance->model;
     const double h = self->plant.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
     laconic_input at[3];
-    for (uint64_t n = 0; n < steps; n++) {
+    for (uint64_t n = 0; n < steps && !instance->cancelled; n++) {
         for (int k = 0; k < 3; k++) shift_input(&at[k], self, ((double)n + 0.5 * k) * h);
         if (fmu_grip_is_watched(instance)) {
             laconic_plant_reactions(&self->ground, &self->plant, &self->contact, &at[0]);
@@ -293,14 +297,20 @@ static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_r
     fmu_model *self = &instance->model;
     const double h = self->plant.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
     uint64_t n;
-    for (n = 0; n < steps && fmu_grip_is_watched(instance); n++) {
+    for (n = 0; n < steps && fmu_grip_is_watched(instance) && !instance->cancelled; n++) {
         fmu_model_refresh(instance, FMU_GROUP_GROUND);
         fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
         const laconic_status status = step_held(self, 1, why);
         if (status != LACONIC_OK) return status;
         self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     }
-    return step_held(self, steps - n, why);
+    while (n < steps && !instance->cancelled) {
+        const uint64_t slice = steps - n < SLICE_STEPS ? steps - n : SLICE_STEPS;
+        const laconic_status status = step_held(self, slice, why);
+        if (status != LACONIC_OK) return status;
+        n += slice;
+    }
+    return LACONIC_OK;
 }
 
 /* Where a sensor leaves its range, its step has been taken; it is taken back. So is what an estimate has begun. */

@@ -152,6 +152,22 @@ def with_values(description: Description, values: Mapping[str, Sequence[float]],
     return Description(root, tuple(variables), description.unknowns)
 
 
+def identifier_in(text: str) -> str:
+    """The model identifier that a description's text has."""
+    return ET.fromstring(text).find("CoSimulation").get("modelIdentifier", "")  # type: ignore[union-attr]
+
+
+def with_identifier(description: Description, identifier: str) -> Description:
+    """The same description with another model identifier: each variant of an FMU has its own."""
+    interfaces = ("ModelExchange", "CoSimulation")
+    if all(each.get("modelIdentifier") == identifier for tag in interfaces for each in description.root.findall(tag)):
+        return description
+    root = ET.fromstring(ET.tostring(description.root))
+    for each in (found for tag in interfaces for found in root.findall(tag)):
+        each.set("modelIdentifier", identifier)
+    return replace(description, root=root)
+
+
 def number(value: float, tag: str) -> str:
     """A value as a description writes it: the shortest text that gives the same double back."""
     if tag == "Boolean":

@@ -12,6 +12,7 @@ from laconic.core.articulated import method_names
 from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
+from laconic.scene.base import read_base
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
@@ -62,6 +63,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts["sensors"] = read_sensors(top.table("sensors"), wheel_count) if top.has("sensors") else NO_SENSORS
     parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["sensors"],
                                     parts["run"]["duration_s"])
+    parts["base"] = read_base(top.table("base"), parts["vehicle"]) if top.has("base") else None
     parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
     parts["in_degrees"] = frozenset(top.in_degrees)
@@ -128,8 +130,6 @@ def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:
     for form in SHORT_FORMS:
         table.has(form)
     table.done(OF_VEHICLES)
-    if hung is not None and not vehicle["wheel_radius_m"] and vehicle["wheel"]:  # all have their own
-        vehicle["wheel_radius_m"] = vehicle["wheel"][0]["radius_m"]
     return vehicle, hung
 
 

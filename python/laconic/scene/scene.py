@@ -18,6 +18,7 @@ from laconic.core.given import shown
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
 from laconic.errors import BadInput, Refused
+from laconic.scene.base import BaseTable
 from laconic.scene.drives import Drives
 from laconic.scene.hinges import Hinge, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
@@ -108,6 +109,7 @@ class Scene:
     rig: Rig = field(default_factory=Rig)
     speed_controller: SpeedController | None = None
     sensors: SensorTables = NO_SENSORS
+    base: BaseTable | None = None
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
     hinges: tuple[Hinge, ...] = ()  # of bodies besides the carriage, in the order of vehicle["body"]
     wheel_places: tuple[str, ...] = ()  # with hinges: the table of each wheel in the file
@@ -278,8 +280,8 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], in_degrees=parts["in_degrees"], hinges=parts.get("hinges", ()),
-        wheel_places=parts.get("wheel_places", ())))
+        sensors=parts["sensors"], base=parts.get("base"), in_degrees=parts["in_degrees"],
+        hinges=parts.get("hinges", ()), wheel_places=parts.get("wheel_places", ())))
 
 
 def with_found_step(scene: Scene) -> Scene:

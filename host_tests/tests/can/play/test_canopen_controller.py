@@ -49,7 +49,8 @@ def enabled(played: Played, mode: int, *, cyclic: bool = False) -> list[BaseNode
     return nodes
 
 
-@pytest.mark.parametrize("real, cycles", [("double", 10_000), ("single", 500)])
+@pytest.mark.parametrize("real, cycles", [
+    pytest.param("double", 10_000, marks=pytest.mark.nightly), ("double", 1000), ("single", 500)])
 def test_ten_thousand_cycles_by_sync_move_the_wheels_as_the_torques_do(real: str, cycles: int, tmp_path: Path) -> None:
     """Cyclic synchronous velocity; a plant that is fed with the torques of the drives takes the same steps, bit for
     bit."""

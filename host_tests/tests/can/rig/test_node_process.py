@@ -128,7 +128,8 @@ def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
     return done.stderr if done.returncode else ""
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("compiler", [
+    pytest.param(each, marks=[pytest.mark.nightly] if each != COMPILERS[0] else []) for each in COMPILERS])
 @pytest.mark.parametrize("definitions", [
     (), ("LACONIC_MAX_WHEELS=24", "LACONIC_NODE_WITH_SENSORS=0"),
     ("LACONIC_NODE_WITH_DRIVES=0", "LACONIC_WITH_AXLE_TORQUE=0"),

@@ -118,7 +118,7 @@ def test_the_reference_client_uses_nothing_of_ours() -> None:
     assert imported - set(sys.stdlib_module_names) == {"can", "cantools"}
 
 
-@pytest.mark.parametrize("real", ["double", "single"])
+@pytest.mark.parametrize("real", ["double", pytest.param("single", marks=pytest.mark.nightly)])
 def test_the_reference_client_drives_a_node_process_in_lockstep_and_in_free_run(real: str) -> None:
     with node_process(real) as port:
         done = subprocess.run([sys.executable, str(FIRMWARE / "reference_client.py"), "--channel",

@@ -146,6 +146,7 @@ def test_the_core_alone_needs_no_python_and_makes_a_shared_library(shared, tmp_p
     assert [*shared.rglob("liblaconic_single.*.so")] + [*shared.rglob("liblaconic_single.so.*")]
 
 
+@pytest.mark.nightly
 @needs_c_library
 def test_a_component_that_was_not_built_is_missing_by_its_name(shared, tmp_path):
     source = user(tmp_path / "user", FOUND.format(component="core"), "core")

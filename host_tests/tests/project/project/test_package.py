@@ -168,7 +168,8 @@ def test_a_wheel_is_known_by_what_it_holds(tmp_path):
 
 
 @pytest.mark.parametrize("module, extra", [("can", "rig"), ("cantools", "rig"), ("serial", "rig"), ("e2e", "rig"),
-                                           ("scipy", "analysis"), ("sympy", "analysis"), ("fmpy", "report")])
+                                           ("scipy", "analysis"), ("sympy", "analysis"), ("fmpy", "report"),
+                                           ("cyclonedds", "ros2")])
 def test_what_an_extra_brings_is_named_with_the_extra(module, extra):
     error = missing_module(ModuleNotFoundError(f"No module named '{module}.x'", name=f"{module}.x"))
     assert str(error).endswith(f'is not installed; pip install "laconic[{extra}]"')

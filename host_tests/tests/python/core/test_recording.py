@@ -144,7 +144,7 @@ def test_reading_and_driving_steps_grow_with_their_number_alone(tmp_path, capsys
 
 # ---- What a recorded row costs beside a step, in instructions: the same on every run.
 
-LEAST, MOST = 1000, 3000  # steps: what a count of one run has in common with another's cancels
+LEAST, MOST = 300, 900  # steps: what a count of one run has in common with another's cancels
 LIMIT = 20.0              # rows cost at most so many steps
 
 needs_cachegrind = pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")

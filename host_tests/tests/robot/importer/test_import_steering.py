@@ -178,3 +178,18 @@ def test_a_joint_of_two_axes_is_that_of_a_steered_wheel(tmp_path: Path) -> None:
 def test_a_kingpin_that_is_inclined_steers(tmp_path: Path) -> None:
     inclined = swivelling(0.0, "revolute", LIMIT.format(-0.5, 0.5)).replace('axis xyz="0 0 1"', 'axis xyz="0 0.25 1"')
     assert "front is steered by turn" in support_words(imported(tmp_path, inclined)[0])
+
+
+def test_wheels_without_mass_that_are_only_seen_stand_for_others(tmp_path: Path) -> None:
+    """As in the model of a car by one front and one rear wheel, which alone are commanded."""
+    seen = ('<visual><origin rpy="1.5707963267948966 0 0"/><geometry><cylinder radius="0.05" length="0.01"/></geometry>'
+            "</visual>")
+    virtual = link("virtual", seen) + joint("virtual_joint", "continuous", "base", "virtual", "0 0 -0.05")
+    found, scene = imported(tmp_path, robot(TWO_WHEELS, virtual, control(VELOCITY.format("virtual_joint"))))
+    assert len(scene.vehicle["wheel"]) == 2
+    assert [each.signal for each in scene.inputs] == ["axle_torque_Nm[1]", "axle_torque_Nm[2]"]
+    assert any("wheels without mass that are only seen stand for others and are left out: virtual_joint" in each
+               for each in found.remarks)
+    solid = virtual.replace("visual", "collision")
+    with pytest.raises(BadInput, match="wheel virtual_joint has no inertia about its axle; give its link an <inertia>"):
+        imported(tmp_path, robot(TWO_WHEELS, solid), rollers={"": "none"})

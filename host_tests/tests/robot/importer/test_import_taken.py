@@ -206,3 +206,15 @@ def test_a_robot_that_can_only_turn_is_turned_about_the_point_that_its_line_says
     columns = simulate(scene.with_run(duration_s=1.0)).columns
     assert columns["yaw_rate_rad_per_s"][-1] == pytest.approx(0.3 / math.hypot(0.3, 0.5), rel=0.02)
     assert columns["wheel_speed_rad_per_s[1]"][-1] == pytest.approx(0.3 / 0.05, rel=0.02)
+
+
+def test_torques_of_damped_axles_grow_with_the_speed_so_that_the_start_is_no_jolt(tmp_path: Path) -> None:
+    """Steady torques against such damping would lift the wheels at the start and reach the speed at once."""
+    damped = robot(TWO_WHEELS).replace("</joint>", '<dynamics damping="5"/></joint>')
+    found, scene = imported(tmp_path, damped)
+    assert found.text.count('kind = "table"') == 2
+    assert any("these torques push ahead with about 0.3 m/s² for 1 s" in each for each in found.assumptions)
+    columns = simulate(scene).columns
+    speed = columns["velocity_body_m_per_s[1]"]
+    at = [round(time / scene.run.step_s) for time in (0.25, 0.5, 1.0, 1.5)]
+    assert [float(speed[k]) for k in at] == pytest.approx([0.075, 0.15, 0.3, 0.0], abs=0.006)

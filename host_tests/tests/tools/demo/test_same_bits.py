@@ -17,6 +17,11 @@ from laconic.tools.demo.rows import Rows, core_rows, difference, exchanges
 FMU_EVERY, NODE_EVERY = 3, 7
 
 
+# Of the other scenes `laconic demo` compares every participant, and test_fmu_bits.py the FMUs.
+QUICK = {"s1", "skid_steer", "kuka_youbot", "paper_caster", "robotino_grey", "turtlebot3_burger"}
+SCENES = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.nightly]) for name in rigid_scene_names()]
+
+
 def long_enough(name: str) -> Scene:
     """The scene over its own length, or 10,000 steps where that is less."""
     scene = steps_of(read_scene(name))
@@ -37,7 +42,7 @@ def core_of(scene: Scene, kept: dict[str, Rows]) -> Rows:
     return kept[key]
 
 
-@pytest.mark.parametrize("name", rigid_scene_names())
+@pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("version", [2, 3])
 def test_fmu_gives_the_cores_bits(version, name, tmp_path, expected):
     scene = long_enough(name)
@@ -48,7 +53,7 @@ def test_fmu_gives_the_cores_bits(version, name, tmp_path, expected):
     assert difference(found, core_of(scene, expected), scene.wheel_count) == ""
 
 
-@pytest.mark.parametrize("name", rigid_scene_names())
+@pytest.mark.parametrize("name", SCENES)
 def test_node_over_can_gives_the_cores_bits(name, expected):
     scene = long_enough(name)
     found = node_rows(scene, scene.steps(), NODE_EVERY)

@@ -230,12 +230,14 @@ REFUSED_EVERYWHERE = ("γ = 0 rad", "mass 0", "mass infinite", "radius not a num
 
 
 WITHOUT_A_DIGIT = {("step 1 s, fast to slow damping 10⁹", real, "auto") for real in REALS}
+SLOW = {(name, real, "auto") for name in ("step 1 s", "step 1 s, fast to slow damping 10⁹") for real in REALS}
 COARSE = {"step 1 s": METHODS, "step 1 s, fast to slow damping 10⁹": ("auto",), "fast to slow damping 10⁹": ("auto",)}
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("real", REALS)
-@pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
+@pytest.mark.parametrize("case, real, method", [
+    pytest.param(case, real, method, id=f"{case.name}-{real}-{method}",
+                 marks=[pytest.mark.nightly] if (case.name, real, method) in SLOW else [])
+    for case in CASES for real in REALS for method in METHODS])
 def test_extreme(case: Extreme, real: str, method: str):
     with np.errstate(all="ignore"):
         found = run_case(read_scene("s1"), case, load(real), method)

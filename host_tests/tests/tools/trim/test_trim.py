@@ -103,8 +103,9 @@ def test_a_workshop_may_be_named_by_a_relative_path(tmp_path: Path, monkeypatch:
 
 
 @needs_gcc
-@pytest.mark.parametrize(("name", "real"), [("s1", "double"), ("paper_caster", "double"),
-                                            ("turtlebot3_burger", "single"), ("example_two_wheel_sizes", "double")])
+@pytest.mark.parametrize(("name", "real"), [
+    ("s1", "double"), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("paper_caster", "double"), ("turtlebot3_burger", "single"), ("example_two_wheel_sizes", "double")))])
 def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop, name: str, real: str):
     scene = read_scene(name)
     whole, trim = (workshop.host_program(Variant(scene, real, "-O0", trim)) for trim in (False, True))
@@ -112,7 +113,8 @@ def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop,
 
 
 @needs_gcc
-@pytest.mark.parametrize(("made", "real"), [(skid_steering, "double"), (slipping, "single")],
+@pytest.mark.parametrize(("made", "real"), [
+    pytest.param(skid_steering, "double", marks=pytest.mark.nightly), (slipping, "single")],
                          ids=["skid_steering", "slipping"])
 def test_a_trimmed_core_with_friction_gives_the_same_bits_as_the_whole_one(
         workshop: Workshop, made: Callable[[Path], Scene], real: str, tmp_path: Path):
@@ -122,6 +124,7 @@ def test_a_trimmed_core_with_friction_gives_the_same_bits_as_the_whole_one(
     assert sum(line.startswith("wheel_speed") for line in whole) == scene.wheel_count
 
 
+@pytest.mark.nightly
 @needs_gcc
 def test_a_trimmed_core_with_friction_ends_where_the_plant_does(workshop: Workshop, tmp_path: Path):
     scene = slipping(tmp_path)
@@ -213,6 +216,7 @@ def test_cmake_builds_the_library_for_a_board_with_another_trees_environment(tmp
     assert (tmp_path / "lib" / "liblaconic_scene.a").is_file()
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
 def test_cmake_names_the_remedy_for_a_scene_that_is_not_there(tmp_path: Path):
     import subprocess

@@ -67,6 +67,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         not_with_hinges(given, errors_wanted, enclose_wanted, film)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
+                             *(drawn_with_hinges(given) if plot else ()),
                              *(signals_to_enclose(given) if enclose_wanted else ())))
     run = as_far_as_it_goes(given, tuple(signals))
     enclosure = enclosed(run) if enclose_wanted else None
@@ -102,6 +103,17 @@ def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool, fil
     for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted), ("--film", film is not None)):
         if is_wanted:
             raise BadInput(f"{scene.path}: {option} does not take vehicles with hinges yet; leave it out")
+
+
+def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
+    """What a picture of bodies on hinges needs besides the usual signals."""
+    if not scene.has_hinges:
+        return ()
+    from laconic.pictures.articulated import DRAWN
+    from laconic.scene.hinge_signals import output_signals_of
+
+    known = output_signals_of(scene.vehicle, scene.hinges)
+    return tuple(signal for name in DRAWN for signal in known[name])
 
 
 def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:

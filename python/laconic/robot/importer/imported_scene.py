@@ -25,9 +25,8 @@ from laconic.robot.importer.push import (
     REACHES,
     Axles,
     Push,
-    listed_steps,
     push,
-    smallest,
+    tables_of,
 )
 from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import Robot
@@ -328,8 +327,7 @@ class _Writer:
         self.comments["input", "0", "signal"] = f"assumption: {what}{found.measured} {self.reached(found)}"
         if found.instead:
             self.remarks.append(self.named(f"{found.instead}; the inputs {found.way} instead"))
-        least = smallest([*found.values.values()])
-        return listed_steps({signal: value for signal, value in found.values.items() if abs(value) > least}, _rounded)
+        return tables_of(found.values, scene.run.step_s, _rounded)
 
     def named(self, text: str) -> str:
         """With the joint's name behind the number of a wheel."""

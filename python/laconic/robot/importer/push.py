@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,6 +20,9 @@ SAME_MOTION = 1e-6
 FORCES = ("body_force_N[1]", "body_force_N[2]", "body_moment_Nm")
 AHEAD = np.array([1.0, 0.0, 0.0])
 
+Values = dict[str, tuple[float, float]]
+"""By signal: at begin and end of the push. Between them they grow with time, as the speed and its damping do."""
+
 
 @dataclass(frozen=True)
 class Axles:
@@ -33,9 +35,9 @@ class Axles:
 
 @dataclass(frozen=True)
 class Push:
-    """Constant inputs by signal, and the speed that they reach; or why there are none."""
+    """Inputs by signal, with their values at begin and end, and the speed that they reach; or why there are none."""
 
-    values: dict[str, float]
+    values: Values
     speed_m_per_s: float
     why_not: str = ""
     way: str = "push ahead"  # what they do
@@ -72,7 +74,8 @@ def push(scene: Scene, axles: Axles, by_force: bool) -> Push:
         what = "a force on the body pushes" if by_force else "torques that roll the wheels ahead push"
         return Push({}, 0.0, f"{what} the robot aside, too, by where its wheels and its centre of mass are; no inputs "
                              "are given")
-    return _corrected(scene, dict(zip(signals, numbers, strict=True)), found, way, instead)
+    pairs = ((float(begin), float(end)) for begin, end in numbers)
+    return _corrected(scene, dict(zip(signals, pairs, strict=True)), found, way, instead)
 
 
 class _Rolling:
@@ -144,21 +147,20 @@ class _Rolling:
         return tuple(FORCES[k] for k in (*chosen, 2)), each[:, [*chosen, 2]]
 
     def solved(self, columns: np.ndarray, axles: Axles, way: Way) -> np.ndarray | None:
-        """The smallest inputs that accelerate as wanted and overcome what resists; None where there are none."""
+        """The smallest inputs that accelerate as wanted and overcome what resists, in columns for begin and end; None
+        where there are none."""
         speeds = self.wheel_speeds(way)
         wanted = self.matrices.inertia @ (way.direction * (ACCELERATION_M_PER_S2 / self.radius))
         wanted = wanted * self.mass * self.radius**2
-        effective_kg = float(way.direction @ wanted) / (ACCELERATION_M_PER_S2 * self.radius)
-        drag = speed_of_drag(float(axles.damping_Nms @ speeds**2) / effective_kg)
-        wanted = wanted + self.matrices.wheel_rows.T @ (axles.damping_Nms * speeds * drag
-                                                        + axles.friction_Nm * np.sign(np.round(speeds, 9)))
-        columns, wanted = self.free @ columns, self.free @ wanted
-        numbers = np.linalg.pinv(columns, rcond=SAME_MOTION) @ wanted
-        missed = float(np.abs(columns @ numbers - wanted).max())
-        return None if missed > SAME_MOTION * float(np.abs(wanted).max()) else np.asarray(numbers)
+        wanted = wanted + self.matrices.wheel_rows.T @ (axles.friction_Nm * np.sign(np.round(speeds, 9)))
+        damped = self.matrices.wheel_rows.T @ (axles.damping_Nms * speeds * ACCELERATION_M_PER_S2 * PUSH_S)
+        columns, both = self.free @ columns, self.free @ np.column_stack([wanted, wanted + damped])
+        numbers = np.linalg.pinv(columns, rcond=SAME_MOTION) @ both
+        missed = float(np.abs(columns @ numbers - both).max())
+        return None if missed > SAME_MOTION * float(np.abs(both).max()) else np.asarray(numbers)
 
 
-def _corrected(scene: Scene, values: dict[str, float], rolling: _Rolling, way: Way, instead: str) -> Push:
+def _corrected(scene: Scene, values: Values, rolling: _Rolling, way: Way, instead: str) -> Push:
     """The inputs, made larger or smaller where slip took a part of their effect; those that go aside are none."""
     wanted = ACCELERATION_M_PER_S2 * PUSH_S
     best = Push(values, 0.0, "", way.words, ", its fastest wheel" if way.is_turn else "", instead)
@@ -170,19 +172,20 @@ def _corrected(scene: Scene, values: dict[str, float], rolling: _Rolling, way: W
             best = replace(best, values=values, speed_m_per_s=reached)
         if abs(reached / wanted - 1.0) <= REACHES / 10.0 or reached <= 0.0:
             break
-        values = {signal: value * min(wanted / reached, 2.0) for signal, value in values.items()}
+        factor = min(wanted / reached, 2.0)
+        values = {signal: (factor * begin, factor * end) for signal, (begin, end) in values.items()}
     if best.speed_m_per_s > 0.0:
         return best
     return Push({}, 0.0, "torques that roll the wheels ahead push the robot aside, too, by where its wheels and its "
                          "centre of mass are; no inputs are given")
 
 
-def speed_along(scene: Scene, values: dict[str, float], rolling: _Rolling, way: Way) -> float | None:
+def speed_along(scene: Scene, values: Values, rolling: _Rolling, way: Way) -> float | None:
     """The speed at the end of a push from rest; None where it moves the robot aside by more than a small part of the
     way, or where a step is refused."""
     plant = replace(scene, inputs=()).plant(scene.core())
     try:
-        plant.run(held_of(values, scene.wheel_count), round(PUSH_S / scene.run.step_s))
+        _run(plant, values, scene.wheel_count, round(PUSH_S / scene.run.step_s))
     except Refused:
         return None
     velocity, yaw_rate = plant.body_velocity()
@@ -194,6 +197,17 @@ def speed_along(scene: Scene, values: dict[str, float], rolling: _Rolling, way: 
     if not way_m > 0.0 or max(abs(float(aside @ moved)), way_m * abs(plant.pose.heading_rad)) > ASIDE * way_m:
         return None
     return float(ahead @ velocity)
+
+
+def _run(plant: Any, values: Values, wheel_count: int, steps: int) -> None:
+    """Holds constant inputs, and in each step of others their value in its middle."""
+    if all(begin == end for begin, end in values.values()):
+        plant.run(held_of({signal: begin for signal, (begin, _) in values.items()}, wheel_count), steps)
+        return
+    for step in range(steps):
+        share = (step + 0.5) / steps
+        now = {signal: begin + share * (end - begin) for signal, (begin, end) in values.items()}
+        plant.run(held_of(now, wheel_count), 1)
 
 
 def held_of(values: dict[str, float], wheel_count: int) -> dict[str, Any]:
@@ -209,21 +223,16 @@ def held_of(values: dict[str, float], wheel_count: int) -> dict[str, Any]:
     return held
 
 
-def speed_of_drag(decay_per_s: float) -> float:
-    """The speed (m/s) whose damping a steady push must add, so that it ends as fast as without any.
-
-    Half the speed at the end where damping is weak, nearly all of it where damping balances the push long before.
-    """
-    k = decay_per_s * PUSH_S
-    return ACCELERATION_M_PER_S2 * PUSH_S * (1.0 / -math.expm1(-k) - 1.0 / k if k > 1e-6 else 0.5)
-
-
-def listed_steps(values: dict[str, float], rounded: Any) -> list[dict[str, Any]]:
-    """As tables of a scene."""
-    return [{"signal": signal, "kind": "steps", "t_s": [0.0, PUSH_S], "value": [rounded(value), 0.0]}
-            for signal, value in values.items()]
-
-
-def smallest(values: Sequence[float]) -> float:
-    """What counts as none among torques."""
-    return 1e-9 * max(map(abs, values), default=0.0)
+def tables_of(values: Values, step_s: float, rounded: Any) -> list[dict[str, Any]]:
+    """As tables of a scene, without those that count as none."""
+    least = 1e-9 * max((abs(value) for pair in values.values() for value in pair), default=0.0)
+    found = []
+    for signal, (begin, end) in values.items():
+        if max(abs(begin), abs(end)) <= least:
+            continue
+        if rounded(begin) == rounded(end):
+            found.append({"signal": signal, "kind": "steps", "t_s": [0.0, PUSH_S], "value": [rounded(begin), 0.0]})
+        else:
+            found.append({"signal": signal, "kind": "table", "t_s": [0.0, PUSH_S, PUSH_S + step_s],
+                          "value": [rounded(begin), rounded(end), 0.0]})
+    return found

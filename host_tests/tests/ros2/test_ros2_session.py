@@ -1,0 +1,550 @@
+"""Robots on the wire, heard and driven by a peer in the same process, in virtual time."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
+from cyclonedds.core import DDSException
+from cyclonedds.qos import Policy
+
+import laconic
+from laconic.errors import BadInput
+from laconic.ros2.maps import Map
+from laconic.ros2.messages import new, type_hash
+from laconic.ros2.session import Ros2Options, Session, write_record
+from laconic.ros2.wire import LATCHED, Participant, Quality, check_name, polled, ros_type
+from laconic.scene import read_scene
+from ros2_support import DOMAIN, WALL_NS, last, rig_of
+
+TWIST = "geometry_msgs/msg/Twist"
+ODOMETRY, TF = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
+USUAL_TOPICS = {"rt/odom": ODOMETRY, "rt/ground_truth/odom": ODOMETRY, "rt/tf": TF, "rt/tf_static": TF,
+                "rt/joint_states": "sensor_msgs/msg/JointState", "rt/imu": "sensor_msgs/msg/Imu",
+                "rt/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
+
+
+def yaw_of(rotation: Any) -> float:
+    return 2.0 * math.atan2(rotation.z, rotation.w)
+
+
+# ---- topics
+
+def test_a_driven_robot_is_heard_on_every_topic() -> None:
+    with rig_of() as rig:
+        readers = {name: rig.node.subscription(name.removeprefix("rt"), kind) for name, kind in USUAL_TOPICS.items()
+                   if name not in ("rt/tf_static", "rt/diagnostics")}
+        rig.drive(150, 0.2, 0.5)
+        found = {name: last(reader) for name, reader in readers.items()}
+        seen = rig.session.base.look()[0]
+        stamp = WALL_NS + round(149 * 0.02 * 1e9)
+        odom, truth = found["rt/odom"], found["rt/ground_truth/odom"]
+        assert odom.header.stamp.sec * 10**9 + odom.header.stamp.nanosec == stamp
+        assert (odom.header.frame_id, odom.child_frame_id) == ("odom", "base_link")
+        assert (truth.header.frame_id, truth.child_frame_id) == ("map", "base_link")
+        assert (truth.pose.pose.position.x, truth.pose.pose.position.y) == (seen.x_m, seen.y_m)
+        assert yaw_of(odom.pose.pose.orientation) == pytest.approx(seen.heading_rad, abs=1e-6)
+        assert odom.twist.twist.linear.x == pytest.approx(0.2, abs=1e-3)
+        link = found["rt/tf"].transforms[0]
+        assert (link.header.frame_id, link.child_frame_id) == ("odom", "base_link")
+        assert link.transform.translation.x == odom.pose.pose.position.x
+        joints = found["rt/joint_states"]
+        assert list(joints.name) == ["wheel_left_joint", "wheel_right_joint"]
+        assert list(joints.position) == seen.angle_rad and list(joints.velocity) == seen.speed_rad_per_s
+        imu = found["rt/imu"]
+        assert imu.angular_velocity.z == pytest.approx(0.5, abs=1e-3)
+        assert imu.linear_acceleration.y == pytest.approx(0.1, abs=1e-3)  # to the centre of the curve
+        assert imu.linear_acceleration.z == 9.80665
+
+
+@pytest.mark.parametrize("kind", ["Twist", "TwistStamped"])
+def test_both_kinds_of_command_are_heard(kind: str) -> None:
+    with rig_of() as rig:
+        writer = rig.node.publisher("cmd_vel", f"geometry_msgs/msg/{kind}")
+        message = rig.twist(0.1) if kind == "Twist" else new("geometry_msgs/msg/TwistStamped", twist=rig.twist(0.1))
+        rig.turn(60, lambda: writer.write(message))
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_stamped_hears_no_plain_twist() -> None:
+    with rig_of(is_stamped=True) as rig:
+        rig.drive(30, 0.1)
+        assert rig.session.base.look()[0].x_m == 0.0
+        assert rig.lines == ["/laconic: a publisher on cmd_vel sends geometry_msgs/msg/Twist, which is not heard; send "
+                             "TwistStamped"]
+
+
+def test_who_comes_late_gets_what_is_latched(tmp_path: Path) -> None:
+    urdf = tmp_path / "robot.urdf"
+    urdf.write_text('<robot name="r"><joint name="wheel_left_joint"/><joint name="wheel_right_joint"/></robot>')
+    with rig_of(urdf=urdf) as rig:
+        rig.turn(5)
+        static = last(rig.node.subscription("/tf_static", TF, LATCHED))
+        frames = [(each.header.frame_id, each.child_frame_id) for each in static.transforms]
+        assert frames == [("base_link", "imu_link")]
+        text = last(rig.node.subscription("/robot_description", "std_msgs/msg/String", LATCHED))
+        assert text.data == urdf.read_text()
+        assert rig.lines == []
+
+
+def test_a_urdf_with_other_joints_is_told(tmp_path: Path) -> None:
+    urdf = tmp_path / "robot.urdf"
+    urdf.write_text('<robot name="r"><joint name="left"/></robot>')
+    with rig_of(urdf=urdf) as rig:
+        assert rig.lines == [f"{urdf}: has no joint wheel_left_joint, wheel_right_joint; give its wheel joints in the "
+                             "scene, as [base] joint_names"]
+
+
+def test_a_supply_has_a_battery_state() -> None:
+    with rig_of("skid_steer") as rig:
+        reader = rig.node.subscription("battery_state", "sensor_msgs/msg/BatteryState")
+        rig.drive(20, 0.3)
+        state = last(reader)
+        assert state.present and 20.0 < state.voltage <= 24.0 and state.current < 0.0
+        assert math.isnan(state.percentage)
+
+
+def test_diagnostics_tell_of_slip_and_commands() -> None:
+    with rig_of("skid_steer") as rig:
+        reader = rig.node.subscription("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+        rig.drive(120, 0.3, 0.6)
+        status = last(reader).status[0]
+        assert status.name == "/laconic: base" and status.level == 1 and "wheels slip" in status.message
+        assert int({each.key: each.value for each in status.values}["commands"]) > 90
+
+
+def test_other_frames_by_name() -> None:
+    with rig_of(frames=("base=base_footprint", "odom=odometry")) as rig:
+        reader = rig.node.subscription("odom", ODOMETRY)
+        rig.turn()
+        odom = last(reader)
+        assert (odom.header.frame_id, odom.child_frame_id) == ("odometry", "base_footprint")
+
+
+# ---- names, quality of service, graph
+
+def announced(participant: Participant, topic: Any) -> dict[str, Any]:
+    found = BuiltinDataReader(participant.dds, topic).take(N=500)
+    return {each.topic_name: each for each in found if hasattr(each, "topic_name") and each.topic_name}
+
+
+@pytest.mark.parametrize("distribution", ["humble", "jazzy", "kilted"])
+def test_writers_are_announced_as_ros_does(distribution: str) -> None:
+    with rig_of(distribution=distribution) as rig:
+        found = announced(rig.peer, BuiltinTopicDcpsPublication)
+        for name, kind in USUAL_TOPICS.items():
+            package, _, last_name = kind.split("/")
+            writer = found[name]
+            assert writer.type_name == f"{package}::msg::dds_::{last_name}_"
+            assert isinstance(writer.qos[Policy.Reliability], Policy.Reliability.Reliable)
+            latched = writer.qos[Policy.Durability] == Policy.Durability.TransientLocal
+            assert latched == (name == "rt/tf_static")
+            assert not writer.qos[Policy.WriterDataLifecycle].autodispose
+            data = writer.qos[Policy.Userdata].data if Policy.Userdata in writer.qos else b""
+            assert data == (b"" if distribution == "humble" else f"typehash={type_hash(kind)};".encode())
+
+
+def test_the_participant_has_an_enclave() -> None:
+    with rig_of() as rig:
+        qos = rig.session.participant.dds.get_qos()
+        assert bytes(qos[Policy.Userdata].data) == b"enclave=/;"
+
+
+@pytest.mark.parametrize("distribution, bytes_of_gid", [("humble", 24), ("jazzy", 16)])
+def test_the_graph_has_node_and_endpoints(distribution: str, bytes_of_gid: int) -> None:
+    with rig_of(distribution=distribution, namespace="/floor1") as rig:
+        infos = polled(rig.peer._others)
+        info = next(each for each in infos if each.node_entities_info_seq and
+                    each.node_entities_info_seq[0].node_name == "laconic")
+        node = info.node_entities_info_seq[0]
+        assert node.node_namespace == "/floor1"
+        assert len(info.gid.data) == bytes_of_gid
+        writers = announced(rig.peer, BuiltinTopicDcpsPublication).values()
+        readers = announced(rig.peer, BuiltinTopicDcpsSubscription).values()
+        known = {bytes(each.key.bytes) for each in (*writers, *readers)}
+        gids = [bytes(each.data)[:16] for each in (*node.writer_gid_seq, *node.reader_gid_seq)]
+        assert len(gids) > 20 and len(set(gids)) == len(gids)
+        assert sum(gid in known for gid in gids) >= len(gids) - 1  # two readers share the name of cmd_vel
+
+
+def test_without_discovery_info_there_is_no_node() -> None:
+    with rig_of(announces=False) as rig:
+        assert all(not each.node_entities_info_seq or each.node_entities_info_seq[0].node_name != "laconic"
+                   for each in polled(rig.peer._others))
+
+
+def test_a_namesake_is_told_once() -> None:
+    with rig_of() as rig:
+        rig.peer.node("laconic")
+        rig.peer.announce()
+        rig.turn(60)
+        assert rig.lines == [f"another node is called /laconic in domain {DOMAIN}; give --namespace or --domain"]
+
+
+def test_names_that_ros_does_not_allow_are_refused() -> None:
+    assert check_name("--namespace", "fleet/a_1/") == "/fleet/a_1"
+    for name in ("1robot", "a b", "a//b", "rob-ot"):
+        with pytest.raises(BadInput, match="is not a name of ROS"):
+            check_name("--namespace", name)
+    assert ros_type("std_msgs::msg::dds_::String_") == "std_msgs/msg/String"
+    assert ros_type("Plain") == "Plain"
+
+
+# ---- several robots
+
+def test_each_of_several_robots_hears_its_own_commands() -> None:
+    with rig_of(robots=3, namespace="/fleet") as rig:
+        readers = [rig.node.subscription(f"/fleet/robot{number}/odom", ODOMETRY) for number in (1, 2, 3)]
+        rig.drive(60, 0.1, topic="/fleet/robot2/cmd_vel")
+        ends = [last(reader).pose.pose.position.x for reader in readers]
+        assert ends[0] == ends[2] == 0.0 and ends[1] > 0.05
+        places = [seen.y_m for seen in rig.session.base.look()]
+        assert places == [0.0, 1.0, 2.0]
+
+
+def test_transforms_stay_in_the_namespace_or_are_shared() -> None:
+    with rig_of(robots=2) as rig:
+        reader = rig.node.subscription("/robot1/tf", TF)
+        rig.turn()
+        assert last(reader).transforms[0].child_frame_id == "base_link"
+    with rig_of(robots=2, shares_tf=True) as rig:
+        reader = rig.node.subscription("/tf", TF)
+        rig.turn()
+        assert {each.transforms[0].child_frame_id for each in polled(reader)} == {"robot1/base_link",
+                                                                                 "robot2/base_link"}
+
+
+# ---- time
+
+def test_simulated_time_is_on_the_clock_and_in_all_stamps() -> None:
+    with rig_of(is_sim_time=True, speed=4.0) as rig:
+        clocks, odoms = rig.node.subscription("/clock", "rosgraph_msgs/msg/Clock"), rig.node.subscription(
+            "odom", ODOMETRY)
+        rig.turn(10)
+        assert [each.clock.nanosec for each in polled(clocks)] == [20_000_000 * n for n in range(1, 11)]
+        assert [each.header.stamp.nanosec for each in polled(odoms)] == [20_000_000 * n for n in range(1, 11)]
+
+
+def test_the_loop_runs_as_fast_as_it_shall() -> None:
+    with rig_of(is_sim_time=True, speed=4.0, duration_s=2.0) as rig:
+        rig.session.run()
+        assert rig.session.cycles == 100
+        assert rig.time.time_s == pytest.approx(99 * 0.02 / 4.0)
+
+
+def test_a_machine_that_sleeps_is_told_and_not_made_up_for() -> None:
+    with rig_of(duration_s=1.0) as rig:
+        rig.time.overslept_s = 30.0
+        rig.session.run()
+        assert rig.session.cycles == 50
+        assert rig.lines == ["the machine was 30 s too late for a cycle; the robot's time stood still meanwhile"]
+        assert rig.session.lateness.skipped_s == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize("jump_s", [-3600.0, 10.0])
+def test_a_jump_of_the_system_clock_is_told_and_changes_no_motion(jump_s: float) -> None:
+    ends = []
+    for jump in (0.0, jump_s):
+        with rig_of() as rig:
+            reader = rig.node.subscription("odom", ODOMETRY, Quality(100))
+            rig.drive(20, 0.1)
+            rig.time.wall_offset_ns += round(jump * 1e9)
+            rig.drive(20, 0.1)
+            ends.append(rig.session.base.look()[0].x_m)
+            stamps = [each.header.stamp.sec for each in polled(reader, most=100)]
+            assert stamps[-1] - stamps[0] == pytest.approx(jump, abs=2)
+            told = [line for line in rig.lines if "clock jumped" in line]
+            assert len(told) == (1 if jump else 0)
+    assert ends[0] == ends[1] > 0.0
+
+
+@pytest.mark.parametrize("rate, message", [(300.0, "--rate: a period of 0.00333333 s is not a whole number of steps"),
+                                           (0.0, "--rate: 0 Hz"), (5000.0, "give 1000 Hz"),
+                                           (float("nan"), "--rate: nan")])
+def test_a_rate_that_does_not_fit_is_refused(rate: float, message: str) -> None:
+    with pytest.raises(BadInput, match=re.escape(message)):
+        Session(read_scene("turtlebot3_burger"), Ros2Options(rate_Hz=rate, domain=DOMAIN, is_local=True))
+
+
+@pytest.mark.parametrize("options, message", [
+    ({"robots": 0}, "--robots: 0"), ({"speed": 2.0}, "--speed: 2 needs stamps of simulated time; add --sim-time"),
+    ({"duration_s": -1.0}, "--duration: -1"), ({"map_file": Path("m.yaml")}, "--map: has a meaning with --loopback"),
+    ({"frames": ("wheel=x",)}, "--frame: wheel=x is not NAME=FRAME"), ({"domain": 300}, "--domain: 300 is not"),
+    ({"robots": 2, "record": Path("r.toml")}, "--record: keeps the run of one robot")])
+def test_options_that_cannot_be_are_one_line(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=re.escape(message)), rig_of(**options):
+        pass
+
+
+# ---- the same bits
+
+@pytest.mark.parametrize("name", ["turtlebot3_burger", "robotino2", "skid_steer"])
+def test_a_recorded_run_has_the_bits_of_simulate(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "recorded.toml"
+    with rig_of(name, record=path) as rig:
+        rig.drive(30, 0.15, 0.6)
+        rig.turn(40)                        # the watchdog stops it
+        rig.drive(10, -0.1)
+        assert write_record(rig.session) == 80 * 20
+        row = rig.session.base.motion.robots[0].plant.row()
+    run = laconic.simulate(laconic.read_scene(path), ("nu_rad_per_s", "x_m", "y_m", "heading_rad",
+                                                      "wheel_speed_rad_per_s", "wheel_angle_rad"))
+    assert np.array([column[-1] for column in run.columns.values()]).tobytes() == row.tobytes()
+
+
+def test_a_placed_robot_ends_the_record(tmp_path: Path) -> None:
+    path = tmp_path / "recorded.toml"
+    with rig_of(record=path) as rig:
+        rig.drive(10, 0.1)
+        rig.session.base.place(0, 1.0, 1.0, 0.0)
+        rig.drive(10, 0.1)
+        assert write_record(rig.session) == 10 * 20
+
+
+# ---- faults: one line each, and the robot stops
+
+def test_silence_stops_the_robot() -> None:
+    with rig_of() as rig:
+        rig.drive(50, 0.2)
+        rig.turn(24)                        # as long as the watchdog waits
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.2, abs=1e-3)
+        rig.turn(40)
+        assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3
+        assert rig.lines == ["/laconic: cmd_vel was silent for 0.5 s, so the robot stops"]
+
+
+def test_a_stop_command_and_silence_after_it_are_no_event() -> None:
+    with rig_of() as rig:
+        rig.drive(50, 0.2)
+        rig.drive(1, 0.0)
+        rig.turn(60)
+        assert rig.lines == []
+
+
+@pytest.mark.parametrize("number", [float("nan"), float("-inf"), 1e300])
+def test_a_command_that_is_not_finite_is_ignored_and_told(number: float) -> None:
+    with rig_of() as rig:
+        rig.drive(20, 0.1)
+        rig.drive(60, number)
+        assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3  # the watchdog heard nothing new
+        assert [line.partition(": ")[2][:47] for line in rig.lines] == [
+            "a command on cmd_vel has a number that is infin", "cmd_vel was silent for 0.5 s, so the robot stop"]
+        assert rig.session.told.counts["/laconic: not finite"] == 60
+
+
+def test_two_commanders_are_told_and_the_last_counts() -> None:
+    with rig_of() as rig:
+        one, other = (rig.node.publisher("cmd_vel", TWIST) for _ in range(2))
+
+        def both() -> None:
+            one.write(rig.twist(0.05))
+            other.write(rig.twist(0.1))
+
+        rig.turn(60, both)
+        assert rig.lines == ["/laconic: two publishers command cmd_vel at once; the last command counts, so stop one "
+                             "of them"]
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_a_publisher_of_another_type_is_told() -> None:
+    with rig_of() as rig:
+        rig.node.publisher("cmd_vel", "std_msgs/msg/String").write(new("std_msgs/msg/String", data="go"))
+        rig.turn(60)
+        assert rig.lines == ["/laconic: a publisher on cmd_vel sends std_msgs/msg/String, which is not heard; send "
+                             "Twist or TwistStamped"]
+        assert rig.session.base.look()[0].x_m == 0.0
+
+
+def test_what_a_command_asks_in_vain_is_told() -> None:
+    with rig_of() as rig:
+        writer, message = rig.node.publisher("cmd_vel", TWIST), rig.twist(0.5, 0.3)
+        message.linear.z = 1.0
+        rig.turn(10, lambda: writer.write(message))
+        assert [line.removeprefix("/laconic: ") for line in rig.lines] == [
+            "a command on cmd_vel has linear.z, angular.x or angular.y, which a robot on the ground leaves out",
+            "cmd_vel: linear.y = 0.3 is impossible for these wheels and becomes 0",
+            "cmd_vel: a speed of 0.5 m/s is limited to 0.22 m/s"]
+
+
+def test_a_peer_that_goes_and_comes_again_drives_again() -> None:
+    with rig_of() as rig:
+        rig.drive(30, 0.1)
+        rig.peer.close()
+        rig.turn(80)
+        assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3
+        with Participant(DOMAIN, is_local=True) as again:
+            rig.node = again.node("peer")
+            rig.drive(60, 0.1)
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_messages_that_raise_in_the_reader_are_counted_and_passed_over() -> None:
+    class Reader:
+        def __init__(self) -> None:
+            self.left = ["bad", "good", "bad"]
+
+        def take(self, N: int) -> list[Any]:  # noqa: N803
+            if not self.left:
+                return []
+            if self.left.pop(0) == "bad":
+                raise ValueError("bytes of another type")
+            return [new(TWIST)]
+
+    wrong: list[int] = []
+    assert len(polled(Reader(), lambda: wrong.append(1))) == 1
+    assert len(wrong) == 2
+
+
+def test_a_refused_step_is_told_and_reset_puts_the_robot_back() -> None:
+    scene = read_scene("robotino2")
+    scene = replace(scene, base=laconic.scene.base.BaseTable(gain_Vs_per_rad=1e306))
+    with rig_of(scene) as rig:
+        rig.drive(5, 0.5)
+        assert len(rig.lines) == 1 and "the robot stands until reset or set_pose" in rig.lines[0]
+        assert rig.session.refusals
+        rig.call("/laconic/reset", "std_srvs/srv/Empty")
+        assert not rig.session.refusals and rig.session.base.look()[0].x_m == 0.0
+
+
+# ---- parameters and services
+
+def test_parameters_are_listed_and_read() -> None:
+    with rig_of(is_sim_time=True) as rig:
+        kind = "rcl_interfaces/srv/"
+        names = rig.call("/laconic/list_parameters", f"{kind}ListParameters").result.names
+        assert "use_sim_time" in names and sorted(names) == list(names)
+        values = rig.call("/laconic/get_parameters", f"{kind}GetParameters",
+                          names=["use_sim_time", "rate_hz", "scene", "nothing"]).values
+        assert [each.type for each in values] == [1, 3, 4, 0]
+        assert (values[0].bool_value, values[1].double_value, values[2].string_value) == (
+            True, 50.0, "TurtleBot3 Burger")
+        types = rig.call("/laconic/get_parameter_types", f"{kind}GetParameterTypes", names=["watchdog_s"]).types
+        assert list(types) == [3]
+        described = rig.call("/laconic/describe_parameters", f"{kind}DescribeParameters",
+                             names=["watchdog_s", "scene"]).descriptors
+        assert [each.read_only for each in described] == [False, True]
+
+
+def test_the_watchdog_is_the_parameter_that_can_be_set() -> None:
+    def parameter(name: str, **value: Any) -> Any:
+        return new("rcl_interfaces/msg/Parameter", name=name, value=new("rcl_interfaces/msg/ParameterValue", **value))
+
+    with rig_of() as rig:
+        given = [parameter("watchdog_s", type=3, double_value=0.2), parameter("scene", type=4, string_value="x"),
+                 parameter("watchdog_s", type=3, double_value=float("nan")),
+                 parameter("use_sim_time", type=1, bool_value=False), parameter("other", type=1)]
+        results = rig.call("/laconic/set_parameters", "rcl_interfaces/srv/SetParameters", parameters=given).results
+        assert [each.successful for each in results] == [True, False, False, True, False]
+        assert rig.session.robots[0].watchdog_s == 0.2
+        whole = rig.call("/laconic/set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically",
+                         parameters=[parameter("watchdog_s", type=3, double_value=0.9), given[1]]).result
+        assert not whole.successful and rig.session.robots[0].watchdog_s == 0.2
+
+
+def test_reset_and_set_pose() -> None:
+    with rig_of() as rig:
+        rig.drive(50, 0.2)
+        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
+        pose.pose.pose.position.x, pose.pose.pose.position.y = 2.0, -1.0
+        pose.pose.pose.orientation.z = pose.pose.pose.orientation.w = math.sqrt(0.5)
+        rig.call("/laconic/set_pose", "robot_localization/srv/SetPose", pose=pose)
+        seen = rig.session.base.look()[0]
+        assert (seen.x_m, seen.y_m, seen.heading_rad) == pytest.approx((2.0, -1.0, math.pi / 2))
+        assert rig.session.base.odometry[0].x_m > 0.1
+        rig.call("/laconic/reset", "std_srvs/srv/Empty")
+        assert rig.session.base.look()[0].x_m == rig.session.base.odometry[0].x_m == 0.0
+
+
+def test_services_have_the_hashes_of_their_messages() -> None:
+    with rig_of() as rig:
+        found = announced(rig.peer, BuiltinTopicDcpsPublication)
+        reply = found["rr/laconic/get_parametersReply"]
+        assert reply.type_name == "rcl_interfaces::srv::dds_::GetParameters_Response_"
+        data = bytes(reply.qos[Policy.Userdata].data).decode()
+        assert re.fullmatch(rf"serviceid=[0-9a-f]{{16}};typehash="
+                            rf"{type_hash('rcl_interfaces/srv/GetParameters_Response')};", data)
+
+
+# ---- loopback
+
+def box_map(folder: Path) -> Path:
+    """A room of 4 m by 2 m with walls, cells of 5 cm, its lower left corner at (-2, -1)."""
+    cells = np.full((40, 80), 254, np.uint8)
+    cells[0, :] = cells[-1, :] = cells[:, 0] = cells[:, -1] = 0
+    (folder / "room.pgm").write_bytes(b"P5\n80 40\n255\n" + cells.tobytes())
+    path = folder / "room.yaml"
+    path.write_text("image: room.pgm\nresolution: 0.05\norigin: [-2.0, -1.0, 0.0]\nnegate: 0\n"
+                    "occupied_thresh: 0.65\nfree_thresh: 0.196\nmode: trinary  # as map_saver writes\n")
+    return path
+
+
+def test_loopback_localizes_by_the_true_pose() -> None:
+    scene = replace(read_scene("turtlebot3_burger"), base=laconic.scene.base.BaseTable(believed_size=0.8))
+    with rig_of(scene, is_loopback=True) as rig:
+        reader, truths = rig.node.subscription("/tf", TF), rig.node.subscription("/ground_truth/odom", ODOMETRY)
+        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
+        pose.pose.pose.position.x, pose.pose.pose.orientation.z, pose.pose.pose.orientation.w = 1.0, 0.6, 0.8
+        rig.node.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped").write(pose)
+        rig.drive(100, 0.2, 0.5)
+        to_base, to_odom = last(reader).transforms
+        assert (to_odom.header.frame_id, to_odom.child_frame_id) == ("map", "odom")
+        yaw, there = yaw_of(to_odom.transform.rotation), to_odom.transform.translation
+        here, truth = to_base.transform.translation, last(truths).pose.pose
+        x = there.x + math.cos(yaw) * here.x - math.sin(yaw) * here.y
+        y = there.y + math.sin(yaw) * here.x + math.cos(yaw) * here.y
+        assert (x, y) == pytest.approx((truth.position.x, truth.position.y), abs=1e-12)
+        assert math.sin(yaw + yaw_of(to_base.transform.rotation) - yaw_of(truth.orientation)) == pytest.approx(0.0)
+        assert abs(yaw - 2.0 * math.atan2(0.6, 0.8)) > 0.05  # the odometry has drifted, and map → odom makes up for it
+
+
+def test_the_scan_shows_the_walls_of_the_map(tmp_path: Path) -> None:
+    with rig_of(is_loopback=True, map_file=box_map(tmp_path)) as rig:
+        grid = last(rig.node.subscription("/map", "nav_msgs/msg/OccupancyGrid", LATCHED))
+        assert (grid.info.width, grid.info.height, grid.info.origin.position.x) == (80, 40, -2.0)
+        assert set(grid.data) == {0, 100}
+        reader = rig.node.subscription("/scan", "sensor_msgs/msg/LaserScan")
+        rig.session.base.place(0, 0.5, 0.0, math.pi / 2)
+        rig.turn(11)
+        scans = polled(reader)
+        assert len(scans) == 3  # ten a second
+        scan = scans[-1]
+        at = {round(math.degrees(scan.angle_min + number * scan.angle_increment)): distance
+              for number, distance in enumerate(scan.ranges)}
+        for degrees, distance in ((0, 0.95), (90, 2.45), (-90, 1.45), (-180, 0.95)):
+            assert at[degrees] == pytest.approx(distance, abs=0.06)
+
+
+def test_outside_the_map_a_scan_hits_nothing(tmp_path: Path) -> None:
+    world = Map.read(box_map(tmp_path))
+    assert np.isinf(world.ranges(50.0, 50.0, np.array([0.0, 1.0]))).all()
+
+
+@pytest.mark.parametrize("old, new_text, message", [
+    ("room.pgm", "other.png", "other.png: cannot be read"), ("resolution: 0.05", "resolution: -1", "resolution: is -1"),
+    ("[-2.0, -1.0, 0.0]", "[0, 0, 0.5]", "origin: has the yaw 0.5"), ("image: room.pgm", "", "image: is missing"),
+    ("[-2.0, -1.0, 0.0]", "here", "origin: is here"), ("0.65", "much", "occupied_thresh: is much")])
+def test_a_wrong_map_is_one_line(tmp_path: Path, old: str, new_text: str, message: str) -> None:
+    path = box_map(tmp_path)
+    path.write_text(path.read_text().replace(old, new_text))
+    with pytest.raises(BadInput, match=re.escape(message)):
+        Map.read(path)
+
+
+def test_a_peer_that_does_not_keep_up_costs_messages_and_not_the_run() -> None:
+    class Full:
+        def write(self, _: Any) -> None:
+            raise DDSException(DDSException.DDS_RETCODE_TIMEOUT, "the history is full")
+
+    with rig_of() as rig:
+        rig.drive(10, 0.1)
+        rig.session.robots[0]._imu._writer = Full()
+        rig.turn(120)
+        assert rig.lines[-1].startswith("/laconic: a peer does not keep up, so ")
+        assert rig.session.robots[0].left_out() == 120
+        assert rig.session.cycles == 130

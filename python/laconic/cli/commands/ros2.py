@@ -1,0 +1,124 @@
+"""The robot as a ROS 2 node, without a ROS installation."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, json_flag, one_of
+from laconic.errors import BadInput, ResultFails
+from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION
+from laconic.scene import METHODS, read_scene
+
+if TYPE_CHECKING:
+    from laconic.ros2.session import Session
+
+
+@click.command("ros2")
+@click.argument("scene_name", type=SceneName(), metavar="SCENE")
+@one_of("--distro", tuple(GID_BYTES), "Distribution of the peers, instead of ROS_DISTRO or jazzy")
+@click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
+@click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
+@click.option("--namespace", default="/", help="Of all topics, services and of the node.")
+@click.option("--robots", type=int, default=1, help="So many robots, in namespaces robot1, robot2 …")
+@click.option("--spacing", "spacing_m", type=float, default=1.0, metavar="METRES", help="Between them at the start.")
+@click.option("--rate", "rate_Hz", type=float, default=50.0, metavar="HZ", show_default=True, help="Of all topics.")
+@click.option("--sim-time", "is_sim_time", is_flag=True, help="Stamps of simulated time, and /clock.")
+@click.option("--speed", type=float, default=1.0, help="With --sim-time: seconds of the robot in a real one.")
+@click.option("--stamped", "is_stamped", is_flag=True, help="Hear TwistStamped alone on cmd_vel, not Twist, too.")
+@click.option("--frame", "frames", multiple=True, metavar="NAME=FRAME",
+              help="Another name of the frame base, odom, map, imu or scan.")
+@click.option("--shared-tf", "shares_tf", is_flag=True, help="/tf for all, with the namespace before each frame.")
+@click.option("--urdf", type=InputPath(), metavar="FILE", help="Publish this file as robot_description.")
+@click.option("--loopback", "is_loopback", is_flag=True,
+              help="For Nav2 without localization: initialpose, and map → odom by the true pose.")
+@click.option("--map", "map_file", type=InputPath(), metavar="FILE.yaml",
+              help="With --loopback: publish this map, and the scan that the robot sees in it.")
+@click.option("--no-discovery-info", "is_silent", is_flag=True, help="Leave the node out of the graph.")
+@click.option("--duration", "duration_s", type=float, metavar="SECONDS",
+              help="How long, by the robot's time.  [default: until Ctrl-C]")
+@click.option("--record", type=OutputFile(".toml"), metavar="F.toml",
+              help="Write the scene with the voltages that acted, for `laconic simulate`.")
+@one_of("--method", METHODS, "Method instead of the scene's")
+@click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
+@json_flag("Machine-readable summary.")
+def command(scene_name: str, distro: str | None, domain: int | None, is_silent: bool, method: str | None,
+            step_s: float | None, json_wanted: bool, **given: Any) -> int:
+    """Runs the robot of SCENE as a ROS 2 node: cmd_vel in; odom, tf, joint_states, imu … out.
+
+    A controller as bases have one turns velocities into voltages, and odom is what its encoders make of the motion;
+    ground_truth/odom is the motion itself. [base] of the scene has gains, limits and beliefs. The robot stops when
+    cmd_vel falls silent. Ctrl-C ends the run with exit status 0; a step that was refused makes it 1.
+    """
+    from laconic.ros2.session import Ros2Options, Session, write_record
+
+    check_step(step_s)
+    scene = read_scene(scene_name).with_run(method=method, step_s=step_s)
+    options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent, **given)
+
+    def say(text: str) -> None:
+        click.echo(text, err=json_wanted)
+
+    began, cpu = time.perf_counter(), time.process_time()
+    with Session(scene, options, say) as session:
+        try:
+            say(introduction(session))
+            session.run()
+        except KeyboardInterrupt:
+            say("stopped by the user")
+        figures = session.figures()
+    seconds = time.perf_counter() - began
+    figures |= {"seconds": seconds, "cpu_share": (time.process_time() - cpu) / seconds}
+    if options.record:
+        say(f"wrote {options.record}: {write_record(session)} steps")
+    click.echo(json.dumps(figures, indent=1) if json_wanted else summary(figures))
+    if session.refusals:
+        raise ResultFails(next(iter(session.refusals.values())))
+    return 0
+
+
+def distribution_of(given: str | None) -> str:
+    """The distribution of the command line, or that of the environment where it is known."""
+    of_environment = os.environ.get("ROS_DISTRO", "")
+    return given or (of_environment if of_environment in GID_BYTES else USUAL_DISTRIBUTION)
+
+
+def domain_of(given: int | None) -> int:
+    """The domain of the command line, or of the environment, as ROS takes it."""
+    text = os.environ.get("ROS_DOMAIN_ID", "")
+    if given is not None or not text:
+        return given or 0
+    try:
+        return int(text)
+    except ValueError:
+        raise BadInput(f"ROS_DOMAIN_ID: {text} is not a whole number; give a domain, 0 to 232") from None
+
+
+def introduction(session: Session) -> str:
+    """How to drive it, in two lines."""
+    options, robots = session.options, session.robots
+    topic = robots[0].command_topic.removeprefix("rt")
+    kind = "TwistStamped" if options.is_stamped else "Twist or TwistStamped"
+    more = f" (and those of {len(robots) - 1} more)" if robots[1:] else ""
+    stamps = f"simulated time at {options.speed:g} times" if options.is_sim_time else "the system's time"
+    torques = "" if session.base.loop.signal == "voltage_V" else "; has no motors, so torques drive its wheels"
+    return (f"{session.scene.name}: {robots[0].node.full_name} in domain {options.domain}, {options.rate_Hz:g} Hz, "
+            f"{stamps}; hears {kind} on {topic}{more}{torques}\n"
+            f"drive it: ros2 topic pub -r 10 {topic} geometry_msgs/msg/{kind.partition(' ')[0]} ... ; stop with Ctrl-C")
+
+
+def summary(figures: dict[str, Any]) -> str:
+    """The run in some lines."""
+    end = figures["final"]
+    lines = [f"{figures['cycles']} cycles of {1e3 * figures['period_s']:g} ms in {figures['seconds']:.2f} s, "
+             f"{figures['commands']} commands heard, {figures['messages']} messages sent, "
+             f"{100 * figures['cpu_share']:.0f} % of a core",
+             f"late by {figures['late_median_ms']:.2g} ms in the median, {figures['late_99_percent_ms']:.2g} ms at "
+             f"99 %, {figures['late_most_ms']:.2g} ms at most; {figures['late_cycles']} cycles by a period or more",
+             f"at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading {end['heading_rad']:.4f} rad"]
+    lines += [f"{count} times {event}" for event, count in figures["events"].items()]
+    return "\n".join(lines)

@@ -1,0 +1,12 @@
+"""The robot of a scene as a ROS 2 node on plain DDS, without a ROS installation; docs/ros2.md shows it at work.
+
+What the command line needs to explain itself stands here, where no DDS is loaded.
+"""
+
+GID_BYTES = {"humble": 24, "iron": 16, "jazzy": 16, "kilted": 16, "lyrical": 16, "rolling": 16}
+"""Distributions, and the bytes of a Gid in their graph."""
+
+USUAL_DISTRIBUTION = "jazzy"
+WITHOUT_HASHES = ("humble",)  # of types, which peers have announced since Iron
+FRAMES = {"base": "base_link", "odom": "odom", "map": "map", "imu": "imu_link", "scan": "base_scan"}
+"""Coordinate frames by their parts."""

@@ -1,0 +1,313 @@
+"""The ROS 2 types that a robot needs: their fields, their classes for cyclonedds, their hashes, their places in CDR.
+
+A type is written once, in DEFINITIONS. Its class, its hash and the offsets of its numbers follow from there. On the
+wire all of them are XCDR1, little endian, of final extensibility.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import re
+import struct
+from dataclasses import dataclass
+from functools import cache
+from types import new_class
+from typing import Any
+
+from cyclonedds.idl import IdlStruct
+from cyclonedds.idl import types as idl_types
+from cyclonedds.idl.annotations import final
+
+DEFINITIONS = """
+builtin_interfaces/msg/Time: int32 sec, uint32 nanosec
+std_msgs/msg/Header: builtin_interfaces/msg/Time stamp, string frame_id
+std_msgs/msg/String: string data
+geometry_msgs/msg/Vector3: float64 x, float64 y, float64 z
+geometry_msgs/msg/Point: float64 x, float64 y, float64 z
+geometry_msgs/msg/Quaternion: float64 x, float64 y, float64 z, float64 w
+geometry_msgs/msg/Pose: geometry_msgs/msg/Point position, geometry_msgs/msg/Quaternion orientation
+geometry_msgs/msg/PoseWithCovariance: geometry_msgs/msg/Pose pose, float64[36] covariance
+geometry_msgs/msg/PoseWithCovarianceStamped: std_msgs/msg/Header header, geometry_msgs/msg/PoseWithCovariance pose
+geometry_msgs/msg/Twist: geometry_msgs/msg/Vector3 linear, geometry_msgs/msg/Vector3 angular
+geometry_msgs/msg/TwistStamped: std_msgs/msg/Header header, geometry_msgs/msg/Twist twist
+geometry_msgs/msg/TwistWithCovariance: geometry_msgs/msg/Twist twist, float64[36] covariance
+geometry_msgs/msg/Transform: geometry_msgs/msg/Vector3 translation, geometry_msgs/msg/Quaternion rotation
+geometry_msgs/msg/TransformStamped: std_msgs/msg/Header header, string child_frame_id, \
+geometry_msgs/msg/Transform transform
+tf2_msgs/msg/TFMessage: geometry_msgs/msg/TransformStamped[] transforms
+nav_msgs/msg/Odometry: std_msgs/msg/Header header, string child_frame_id, \
+geometry_msgs/msg/PoseWithCovariance pose, geometry_msgs/msg/TwistWithCovariance twist
+nav_msgs/msg/MapMetaData: builtin_interfaces/msg/Time map_load_time, float32 resolution, uint32 width, \
+uint32 height, geometry_msgs/msg/Pose origin
+nav_msgs/msg/OccupancyGrid: std_msgs/msg/Header header, nav_msgs/msg/MapMetaData info, int8[] data
+sensor_msgs/msg/JointState: std_msgs/msg/Header header, string[] name, float64[] position, float64[] velocity, \
+float64[] effort
+sensor_msgs/msg/Imu: std_msgs/msg/Header header, geometry_msgs/msg/Quaternion orientation, \
+float64[9] orientation_covariance, geometry_msgs/msg/Vector3 angular_velocity, \
+float64[9] angular_velocity_covariance, geometry_msgs/msg/Vector3 linear_acceleration, \
+float64[9] linear_acceleration_covariance
+sensor_msgs/msg/LaserScan: std_msgs/msg/Header header, float32 angle_min, float32 angle_max, \
+float32 angle_increment, float32 time_increment, float32 scan_time, float32 range_min, float32 range_max, \
+float32[] ranges, float32[] intensities
+sensor_msgs/msg/BatteryState: std_msgs/msg/Header header, float32 voltage, float32 temperature, float32 current, \
+float32 charge, float32 capacity, float32 design_capacity, float32 percentage, uint8 power_supply_status, \
+uint8 power_supply_health, uint8 power_supply_technology, bool present, float32[] cell_voltage, \
+float32[] cell_temperature, string location, string serial_number
+rosgraph_msgs/msg/Clock: builtin_interfaces/msg/Time clock
+diagnostic_msgs/msg/KeyValue: string key, string value
+diagnostic_msgs/msg/DiagnosticStatus: byte level, string name, string message, string hardware_id, \
+diagnostic_msgs/msg/KeyValue[] values
+diagnostic_msgs/msg/DiagnosticArray: std_msgs/msg/Header header, diagnostic_msgs/msg/DiagnosticStatus[] status
+rcl_interfaces/msg/ParameterValue: uint8 type, bool bool_value, int64 integer_value, float64 double_value, \
+string string_value, byte[] byte_array_value, bool[] bool_array_value, int64[] integer_array_value, \
+float64[] double_array_value, string[] string_array_value
+rcl_interfaces/msg/Parameter: string name, rcl_interfaces/msg/ParameterValue value
+rcl_interfaces/msg/FloatingPointRange: float64 from_value, float64 to_value, float64 step
+rcl_interfaces/msg/IntegerRange: int64 from_value, int64 to_value, uint64 step
+rcl_interfaces/msg/ParameterDescriptor: string name, uint8 type, string description, \
+string additional_constraints, bool read_only, bool dynamic_typing, \
+rcl_interfaces/msg/FloatingPointRange[<=1] floating_point_range, rcl_interfaces/msg/IntegerRange[<=1] integer_range
+rcl_interfaces/msg/ListParametersResult: string[] names, string[] prefixes
+rcl_interfaces/msg/SetParametersResult: bool successful, string reason
+rcl_interfaces/srv/GetParameters_Request: string[] names
+rcl_interfaces/srv/GetParameters_Response: rcl_interfaces/msg/ParameterValue[] values
+rcl_interfaces/srv/GetParameterTypes_Request: string[] names
+rcl_interfaces/srv/GetParameterTypes_Response: uint8[] types
+rcl_interfaces/srv/DescribeParameters_Request: string[] names
+rcl_interfaces/srv/DescribeParameters_Response: rcl_interfaces/msg/ParameterDescriptor[] descriptors
+rcl_interfaces/srv/ListParameters_Request: string[] prefixes, uint64 depth
+rcl_interfaces/srv/ListParameters_Response: rcl_interfaces/msg/ListParametersResult result
+rcl_interfaces/srv/SetParameters_Request: rcl_interfaces/msg/Parameter[] parameters
+rcl_interfaces/srv/SetParameters_Response: rcl_interfaces/msg/SetParametersResult[] results
+rcl_interfaces/srv/SetParametersAtomically_Request: rcl_interfaces/msg/Parameter[] parameters
+rcl_interfaces/srv/SetParametersAtomically_Response: rcl_interfaces/msg/SetParametersResult result
+std_srvs/srv/Empty_Request: uint8 structure_needs_at_least_one_member
+std_srvs/srv/Empty_Response: uint8 structure_needs_at_least_one_member
+robot_localization/srv/SetPose_Request: geometry_msgs/msg/PoseWithCovarianceStamped pose
+robot_localization/srv/SetPose_Response: uint8 structure_needs_at_least_one_member
+rmw_dds_common/msg/NodeEntitiesInfo: string<=256 node_namespace, string<=256 node_name, \
+rmw_dds_common/msg/Gid[] reader_gid_seq, rmw_dds_common/msg/Gid[] writer_gid_seq
+rmw_dds_common/msg/ParticipantEntitiesInfo: rmw_dds_common/msg/Gid gid, \
+rmw_dds_common/msg/NodeEntitiesInfo[] node_entities_info_seq
+"""
+
+GID = "rmw_dds_common/msg/Gid"
+GID_FIELDS = {16: "uint8[16] data", 24: "uint8[24] data"}
+"""Of a Gid: 24 bytes up to Humble, 16 since Iron. Its .msg file has char, which is uint8 in IDL and in a hash."""
+
+idl: Any = idl_types
+FIELD_TYPES = {"int8": 2, "uint8": 3, "int16": 4, "uint16": 5, "int32": 6, "uint32": 7, "int64": 8, "uint64": 9,
+               "float32": 10, "float64": 11, "bool": 15, "byte": 16, "string": 17}
+"""Numbers of basic types in a type description (REP 2011)."""
+NESTED, BOUNDED_STRING = 1, 21
+ARRAY, BOUNDED, UNBOUNDED = 48, 96, 144  # added to the number of an item's type
+
+FORMATS = {"int8": "b", "uint8": "B", "byte": "B", "bool": "?", "int16": "h", "uint16": "H", "int32": "i",
+           "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
+OF_IDL: dict[str, Any] = {"byte": idl.uint8, "bool": bool, "string": str}
+CDR_HEADER = 4  # bytes before the first member, which alignment does not count
+IS_UNIT = {"geometry_msgs/msg/Quaternion": {"w": 1.0}}
+HEADER_OF_REQUEST = "uint64 client, int64 sequence"
+"""What rmw_cyclonedds puts before a request and before its response; it is not part of the type and its hash."""
+
+
+@dataclass(frozen=True)
+class FieldType:
+    """The type of one field: an item's type, and how many of them there are."""
+
+    item: str                 # a basic type, or the name of a nested one
+    bound: int = 0            # of a string's length
+    many: int = 0             # ARRAY, BOUNDED, UNBOUNDED; 0: a single one
+    count: int = 0            # items of an array, at most items of a bounded sequence
+
+    @property
+    def is_nested(self) -> bool:
+        """Whether the item has fields of its own."""
+        return "/" in self.item
+
+
+FIELD = re.compile(r"(?P<item>[\w/]+)(<=(?P<bound>\d+))?(?P<many>\[(?P<most><=)?(?P<count>\d*)\])? (?P<name>\w+)")
+Fields = tuple[tuple[str, FieldType], ...]
+
+
+def fields_of(text: str) -> Fields:
+    """The fields of one definition."""
+    found = []
+    for each in text.split(","):
+        part = FIELD.fullmatch(each.strip())
+        assert part is not None, each
+        many = 0 if not part["many"] else BOUNDED if part["most"] else ARRAY if part["count"] else UNBOUNDED
+        found.append((part["name"], FieldType(part["item"], int(part["bound"] or 0), many, int(part["count"] or 0))))
+    return tuple(found)
+
+
+@cache
+def definitions(gid_bytes: int) -> dict[str, Fields]:
+    """Every type by its name, with the Gid of a distribution."""
+    named = (line.split(": ", 1) for line in DEFINITIONS.strip().splitlines())
+    return {name: fields_of(text) for name, text in named} | {GID: fields_of(GID_FIELDS[gid_bytes])}
+
+
+# ---- classes
+
+def dds_name(name: str) -> str:
+    """The type's name on the wire: geometry_msgs::msg::dds_::Twist_."""
+    package, kind, last = name.split("/")
+    return f"{package}::{kind}::dds_::{last}_"
+
+
+def message_class(name: str, gid_bytes: int = 16, with_header: bool = False) -> Any:
+    """The class of a type, whose instances are zero, empty or without rotation; `with_header`: of a service."""
+    return _made(name, gid_bytes if name.startswith("rmw_dds_common/") else 16, with_header)
+
+
+@cache
+def _made(name: str, gid_bytes: int, with_header: bool) -> Any:
+    fields = (fields_of(HEADER_OF_REQUEST) if with_header else ()) + definitions(gid_bytes)[name]
+    unit, body = IS_UNIT.get(name, {}), {}
+    annotations = {}
+    for field, kind in fields:
+        annotations[field] = _idl_type(kind, gid_bytes)
+        body[field] = dataclasses.field(default_factory=_fresh(kind, gid_bytes, unit.get(field)))
+    body["__annotations__"] = annotations
+    short = name.rpartition("/")[2]
+    typename = dds_name(name).replace("::", ".")
+    made = new_class(short, (IdlStruct,), {"typename": typename}, lambda space: space.update(body))
+    made.__module__ = __name__
+    made = final(dataclass(made))
+    made.__idl__.populate()  # type: ignore[attr-defined]
+    return made
+
+
+def _idl_type(kind: FieldType, gid_bytes: int) -> Any:
+    item = message_class(kind.item, gid_bytes) if kind.is_nested else OF_IDL.get(kind.item) or getattr(idl, kind.item)
+    if kind.bound:
+        item = idl.bounded_str[kind.bound]
+    if kind.many == ARRAY:
+        return idl.array[item, kind.count]
+    if kind.many:
+        return idl.sequence[item, kind.count] if kind.count else idl.sequence[item]
+    return item
+
+
+def _fresh(kind: FieldType, gid_bytes: int, unit: float | None) -> Any:
+    """What makes the usual value of a field."""
+    if kind.many == ARRAY:
+        item = 0.0 if kind.item.startswith("float") else 0
+        return lambda: [item] * kind.count
+    if kind.many:
+        return list
+    if kind.is_nested:
+        return message_class(kind.item, gid_bytes)
+    usual = {"string": "", "bool": False}.get(kind.item, 0.0 if kind.item.startswith("float") else 0)
+    return lambda: usual if unit is None else unit
+
+
+def new(kind: str, /, **values: Any) -> Any:
+    """A message; what is not given is zero or empty."""
+    return message_class(kind)(**values)
+
+
+# ---- hashes
+
+def type_hash(name: str, gid_bytes: int = 16) -> str:
+    """RIHS01: SHA-256 of the type's description as JSON, with those of all types in it (REP 2011)."""
+    known = definitions(gid_bytes)
+    inner: set[str] = set()
+    _collect(name, known, inner)
+    text = json.dumps({"type_description": _described(name, known),
+                       "referenced_type_descriptions": [_described(each, known) for each in sorted(inner)]})
+    return f"RIHS01_{hashlib.sha256(text.encode()).hexdigest()}"
+
+
+def _collect(name: str, known: dict[str, Fields], found: set[str]) -> None:
+    for _, kind in known[name]:
+        if kind.is_nested and kind.item not in found:
+            found.add(kind.item)
+            _collect(kind.item, known, found)
+
+
+def _described(name: str, known: dict[str, Fields]) -> dict[str, Any]:
+    return {"type_name": name, "fields": [{"name": field, "type": _numbered(kind)} for field, kind in known[name]]}
+
+
+def _numbered(kind: FieldType) -> dict[str, Any]:
+    number = NESTED if kind.is_nested else BOUNDED_STRING if kind.bound else FIELD_TYPES[kind.item]
+    return {"type_id": number + kind.many, "capacity": kind.count, "string_capacity": kind.bound,
+            "nested_type_name": kind.item if kind.is_nested else ""}
+
+
+# ---- messages that are written a thousand times a second
+
+class Packed:
+    """A message whose texts and lengths stay: serialized once, then its numbers are put at their places.
+
+    `message` goes to a DataWriter, which takes its bytes from here.
+    """
+
+    def __init__(self, name: str, message: Any):
+        self.message = message
+        self.data = bytearray(message.serialize(use_version_2=False))
+        self.data.extend(bytes(-len(self.data) % 4))
+        self.offsets = offsets_of(name, message)
+        message.serialize = self._serialize
+
+    def _serialize(self, *_: Any, **__: Any) -> bytes:
+        return bytes(self.data)
+
+    def slot(self, path: str, form: str) -> Slot:
+        """The place of numbers in a row that begins with a member: slot("pose.pose.position", "3d")."""
+        return Slot(self.data, self.offsets[path], struct.Struct(f"<{form}"))
+
+
+class Slot:
+    """Numbers at one place of a packed message."""
+
+    def __init__(self, data: bytearray, offset: int, form: struct.Struct):
+        self._data, self._offset, self._pack = data, offset, form.pack_into
+
+    def put(self, *values: float) -> None:
+        """Writes all numbers of the row."""
+        self._pack(self._data, self._offset, *values)
+
+
+def offsets_of(name: str, message: Any) -> dict[str, int]:
+    """Where each member of a message begins in its CDR, by path: {"header.stamp.sec": 4, …}; items count from 0."""
+    found: dict[str, int] = {}
+    _walk(name, message, "", 0, found)
+    return {path: CDR_HEADER + offset for path, offset in found.items()}
+
+
+def _walk(name: str, message: Any, path: str, at: int, found: dict[str, int]) -> int:
+    for field, kind in definitions(16)[name]:
+        value, here = getattr(message, field), f"{path}{field}"
+        if kind.many in (BOUNDED, UNBOUNDED):
+            at = _aligned(at, 4) + 4
+        items = list(value) if kind.many else [value]
+        for number, item in enumerate(items):
+            each = f"{here}[{number}]" if kind.many else here
+            at = _item(kind, item, each, at, found)
+        if kind.many and items:
+            found[here] = found[f"{here}[0]"]
+    return at
+
+
+def _item(kind: FieldType, item: Any, path: str, at: int, found: dict[str, int]) -> int:
+    """Enters one item and returns where it ends."""
+    if kind.is_nested:
+        end = _walk(kind.item, item, f"{path}.", at, found)
+        first = next(name for name in found if name.startswith(f"{path}."))
+        found[path] = found[first]
+        return end
+    if kind.item == "string":
+        found[path] = _aligned(at, 4)
+        return found[path] + 4 + len(item.encode()) + 1
+    size = struct.calcsize(FORMATS[kind.item])
+    found[path] = _aligned(at, size)
+    return found[path] + size
+
+
+def _aligned(at: int, size: int) -> int:
+    return (at + size - 1) // size * size

@@ -1,0 +1,423 @@
+"""One robot on the wire: what it hears, what it publishes, what its services answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from laconic.ros2.base import Base
+from laconic.ros2.messages import Packed, dds_name, new
+from laconic.ros2.motion import GRAVITY_M_PER_S2, Seen
+from laconic.ros2.wire import (
+    LATCHED,
+    TRANSFORMS,
+    USUAL,
+    Node,
+    Participant,
+    Quality,
+    polled,
+    ros_type,
+    sent,
+    topic_name,
+)
+
+TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+POSE_STAMPED = "geometry_msgs/msg/PoseWithCovarianceStamped"
+ODOMETRY, TRANSFORM = "nav_msgs/msg/Odometry", "geometry_msgs/msg/TransformStamped"
+NODE_NAME = "laconic"
+UNKNOWN = -1.0                      # first covariance of what a sensor does not measure
+SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and across, yaw rate, out of the plane
+OK, WARN, ERROR, STALE = range(4)   # levels of diagnostics
+NANO = 10**9
+KEPT_S = 0.25                       # of each topic, for peers that have lost a packet
+LARGEST = 1e4                       # m/s or rad/s of a command
+
+# rcl_interfaces/msg/ParameterType
+NOT_SET, BOOL, INTEGER, DOUBLE, STRING = range(5)
+
+
+@dataclass
+class Told:
+    """Lines for the user: each kind of event at most once in a while, all of them counted."""
+
+    say: Callable[[str], None]
+    every_s: float = 10.0
+    counts: dict[str, int] = field(default_factory=dict)
+    _last_s: dict[str, float] = field(default_factory=dict)
+
+    def tell(self, now_s: float, event: str, text: str) -> None:
+        """Counts an event, and prints its line unless the same event had one lately."""
+        self.counts[event] = self.counts.get(event, 0) + 1
+        if now_s - self._last_s.get(event, -math.inf) >= self.every_s:
+            self._last_s[event] = now_s
+            self.say(text)
+
+
+@dataclass
+class Command:
+    """The last velocity that was heard, and from which publisher."""
+
+    heard_s: float = -math.inf
+    publisher: int = 0
+    count: int = 0
+    has_stopped: bool = True        # by the watchdog
+
+
+class RobotNode:
+    """One robot of a base as a node."""
+
+    def __init__(self, participant: Participant, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
+                 is_sim_time: bool, is_stamped: bool, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
+                 description: str | None = None):
+        self.base, self.robot, self.told = base, robot, told
+        self.node: Node = participant.node(NODE_NAME, namespace)
+        prefix = f"{namespace.strip('/')}/" if shares_tf and namespace != "/" else ""
+        self.frames = {name: frame if name == "map" else prefix + frame for name, frame in frames.items()}
+        self.command, self.watchdog_s, self.heading_rad = Command(), base.table.watchdog_s, 0.0
+        self.has_map, self.is_sim_time, self.rate_Hz, self.messages = has_map, is_sim_time, rate_Hz, 0
+        kinds = [TWIST_STAMPED] if is_stamped else [TWIST, TWIST_STAMPED]
+        self.command_topic = topic_name("rt", namespace, "cmd_vel")
+        self._commands = [self.node.subscription("cmd_vel", kind) for kind in kinds]
+        self._command_types = kinds
+        self._poses = self.node.subscription("initialpose", POSE_STAMPED) if has_map else None
+        self._stream = Quality(max(USUAL.depth, math.ceil(KEPT_S * rate_Hz)))
+        tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
+        self._left_out = 0
+        self._publish_all(tf, description)
+        self._serve()
+
+    # ---- publishers
+
+    def _publish_all(self, tf: tuple[str, str], description: str | None) -> None:
+        node, frames, wheels = self.node, self.frames, self.base.wheel_count
+        stream = self._stream
+        self._odom = OdometryOut(node, "odom", frames["odom"], frames["base"], SURE, stream)
+        self._truth = OdometryOut(node, "ground_truth/odom", frames["map"], frames["base"], 0.0, stream)
+        names = list(self.base.table.joint_names) or [f"wheel_{number}_joint" for number in range(1, wheels + 1)]
+        self.joint_names = names
+        joints = new("sensor_msgs/msg/JointState", name=names, position=[0.0] * wheels, velocity=[0.0] * wheels)
+        self._joints = Out(node, "joint_states", "sensor_msgs/msg/JointState", joints, stream)
+        self._angles, self._speeds = (self._joints.packed.slot(name, f"{wheels}d") for name in ("position", "velocity"))
+        imu = new("sensor_msgs/msg/Imu")
+        imu.header.frame_id = frames["imu"]
+        self._imu = Out(node, "imu", "sensor_msgs/msg/Imu", imu, stream)
+        self._turned = self._imu.packed.slot("orientation.z", "2d")
+        self._rate = self._imu.packed.slot("angular_velocity.z", "d")
+        self._acceleration = self._imu.packed.slot("linear_acceleration", "3d")
+        links = [transform(frames["odom"], frames["base"])]
+        if self.has_map:
+            links.append(transform(frames["map"], frames["odom"]))
+        self._tf = Out(node, tf[0], "tf2_msgs/msg/TFMessage", new("tf2_msgs/msg/TFMessage", transforms=links),
+                       max(stream, TRANSFORMS, key=lambda each: each.depth),
+                       stamps=[f"transforms[{number}].header.stamp" for number in range(len(links))])
+        self._links = [(self._tf.packed.slot(f"transforms[{number}].transform.translation", "2d"),
+                        self._tf.packed.slot(f"transforms[{number}].transform.rotation.z", "2d"))
+                       for number in range(len(links))]
+        self._battery = self._supply() if self.base.scene.vehicle.get("drive", {}).get("supply_V") else None
+        imu_table = self.base.scene.sensors.imu or {}
+        fixed = [transform(frames["base"], frames["imu"], imu_table.get("x_m", 0.0), imu_table.get("y_m", 0.0),
+                           imu_table.get("heading_rad", 0.0))]
+        if self.has_map:
+            fixed.append(transform(frames["base"], frames["scan"]))
+        static = node.publisher(tf[1], "tf2_msgs/msg/TFMessage", LATCHED)
+        static.write(new("tf2_msgs/msg/TFMessage", transforms=fixed))
+        if description is not None:
+            node.publisher("robot_description", "std_msgs/msg/String", LATCHED).write(
+                new("std_msgs/msg/String", data=description))
+
+    def _supply(self) -> Out:
+        nothing = float("nan")
+        message = new("sensor_msgs/msg/BatteryState", temperature=nothing, charge=nothing, capacity=nothing,
+                      design_capacity=nothing, percentage=nothing, present=True)
+        return Out(self.node, "battery_state", "sensor_msgs/msg/BatteryState", message)
+
+    def publish(self, seen: Seen, stamp_ns: int, period_s: float) -> None:
+        """All of one cycle."""
+        stamp, odometry = divmod(stamp_ns, NANO), self.base.odometry[self.robot]
+        here = (odometry.x_m, odometry.y_m, odometry.heading_rad)
+        truth = (seen.x_m, seen.y_m, seen.heading_rad)
+        self._odom.write(stamp, here, odometry.velocity)
+        self._truth.write(stamp, truth, seen.velocity)
+        self._link(0, here)
+        if self.has_map:
+            self._link(1, between(truth, here))
+        self._tf.write(stamp)
+        self._angles.put(*seen.angle_rad)
+        self._speeds.put(*seen.speed_rad_per_s)
+        self._joints.write(stamp)
+        ahead, left, rate = seen.imu
+        self.heading_rad += rate * period_s
+        self._turned.put(math.sin(0.5 * self.heading_rad), math.cos(0.5 * self.heading_rad))
+        self._rate.put(rate)
+        self._acceleration.put(ahead, left, GRAVITY_M_PER_S2)
+        self._imu.write(stamp)
+        self.messages += 5
+        if self._battery is not None and seen.supply is not None:
+            self._battery.packed.slot("voltage", "f").put(seen.supply[0])
+            self._battery.packed.slot("current", "f").put(-seen.supply[1])  # below 0: it discharges
+            self._battery.write(stamp)
+            self.messages += 1
+
+    def _link(self, number: int, pose: tuple[float, float, float]) -> None:
+        place, turn = self._links[number]
+        place.put(pose[0], pose[1])
+        turn.put(math.sin(0.5 * pose[2]), math.cos(0.5 * pose[2]))
+
+    # ---- commands
+
+    def hear(self, now_s: float) -> None:
+        """Takes commands and poses that have come, and stops the robot after a silence."""
+        for reader, kind in zip(self._commands, self._command_types, strict=True):
+            for message in polled(reader, lambda: self._tell(now_s, "unreadable", "a message on cmd_vel cannot be read "
+                                                             "as its type and is ignored")):
+                self._obey(message.twist if kind == TWIST_STAMPED else message, message, now_s)
+        if self._poses is not None:
+            for message in polled(self._poses):
+                self._move(message.pose.pose, "initialpose", now_s)
+        command = self.command
+        if not command.has_stopped and now_s - command.heard_s > self.watchdog_s:
+            command.has_stopped = True
+            if self.base.is_commanded(self.robot):
+                self._tell(now_s, "watchdog", f"cmd_vel was silent for {self.watchdog_s:g} s, so the robot stops")
+            self.base.command(self.robot, 0.0, 0.0, 0.0)
+
+    def _obey(self, twist: Any, message: Any, now_s: float) -> None:
+        wanted = (twist.linear.x, twist.linear.y, twist.angular.z)
+        others = (twist.linear.z, twist.angular.x, twist.angular.y)
+        if not all(abs(each) <= LARGEST for each in (*wanted, *others)):  # NaN is not, either
+            self._tell(now_s, "not finite", "a command on cmd_vel has a number that is infinite, NaN or beyond "
+                       f"{LARGEST:g}, and is ignored; the last one holds until the watchdog")
+            return
+        if any(others):
+            self._tell(now_s, "out of plane", "a command on cmd_vel has linear.z, angular.x or angular.y, which a "
+                       "robot on the ground leaves out")
+        command, publisher = self.command, int(message.sample_info.publication_handle)
+        if command.publisher not in (0, publisher) and now_s - command.heard_s <= self.watchdog_s:
+            self._tell(now_s, "two commanders", "two publishers command cmd_vel at once; the last command counts, so "
+                       "stop one of them")
+        command.heard_s, command.publisher, command.has_stopped = now_s, publisher, False
+        command.count += 1
+        for remark in self.base.command(self.robot, *wanted):
+            self._tell(now_s, f"limited: {remark.partition(' ')[0]}", f"cmd_vel: {remark}")
+
+    def _move(self, pose: Any, who: str, now_s: float) -> bool:
+        turn = pose.orientation
+        numbers = (pose.position.x, pose.position.y, turn.x, turn.y, turn.z, turn.w)
+        if not all(map(math.isfinite, numbers)) or turn.z**2 + turn.w**2 < 1e-12:
+            self._tell(now_s, "bad pose", f"{who} has a pose that is not finite or has no yaw, and is ignored")
+            return False
+        yaw = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
+        self.base.place(self.robot, pose.position.x, pose.position.y, yaw)
+        self.command = Command(publisher=self.command.publisher, count=self.command.count)
+        self._tell(now_s, "placed", f"{who} puts the robot at x = {pose.position.x:g} m, y = {pose.position.y:g} m, "
+                   f"yaw = {yaw:.4g} rad")
+        return True
+
+    def wrong_type(self, topic: str, kind: str, now_s: float) -> None:
+        """A publisher has come; tells the user if its messages cannot be commands of this robot."""
+        types = [dds_name(each) for each in self._command_types]
+        if topic == self.command_topic and kind not in types:
+            names = " or ".join(each.rpartition("/")[2] for each in self._command_types)
+            self._tell(now_s, f"type {kind}", f"a publisher on cmd_vel sends {ros_type(kind)}, which is not heard; "
+                       f"send {names}")
+
+    def _tell(self, now_s: float, event: str, text: str) -> None:
+        self.told.tell(now_s, f"{self.node.full_name}: {event}", f"{self.node.full_name}: {text}")
+
+    # ---- services
+
+    def _serve(self) -> None:
+        own = f"{self.node.name}/"
+        for name, answer in (("get_parameters", self._get), ("get_parameter_types", self._types),
+                             ("describe_parameters", self._describe), ("list_parameters", self._list),
+                             ("set_parameters", self._set), ("set_parameters_atomically", self._set_all)):
+            kind = "".join(word.title() for word in name.split("_"))
+            self.node.service(own + name, f"rcl_interfaces/srv/{kind}", answer)
+        self.node.service(f"{own}reset", "std_srvs/srv/Empty", self._reset)
+        self.node.service(f"{own}set_pose", "robot_localization/srv/SetPose", self._set_pose)
+
+    def answer(self, now_s: float) -> None:
+        """Answers the requests that have come."""
+        self._now_s = now_s
+        for service in self.node.services:
+            service.poll(lambda text: self._tell(now_s, "unreadable request", text))
+
+    def _reset(self, _: Any) -> dict[str, Any]:
+        self.base.reset(self.robot)
+        self.command, self.heading_rad = Command(count=self.command.count), 0.0
+        self._tell(self._now_s, "reset", "reset puts the robot back to the scene's start")
+        return {}
+
+    def _set_pose(self, request: Any) -> dict[str, Any]:
+        self._move(request.pose.pose.pose, "set_pose", self._now_s)
+        return {}
+
+    def parameters(self) -> dict[str, bool | float | str]:
+        """What `ros2 param` lists."""
+        run = self.base.scene.run
+        return {"method": run.method, "rate_hz": self.rate_Hz, "scene": self.base.scene.name, "step_s": run.step_s,
+                "use_sim_time": self.is_sim_time, "watchdog_s": self.watchdog_s}
+
+    def _get(self, request: Any) -> dict[str, Any]:
+        known = self.parameters()
+        return {"values": [value_of(known.get(name)) for name in request.names]}
+
+    def _types(self, request: Any) -> dict[str, Any]:
+        known = self.parameters()
+        return {"types": [value_of(known.get(name)).type for name in request.names]}
+
+    def _describe(self, request: Any) -> dict[str, Any]:
+        known = self.parameters()
+        return {"descriptors": [new("rcl_interfaces/msg/ParameterDescriptor", name=name,
+                                    type=value_of(known.get(name)).type, read_only=name != "watchdog_s")
+                                for name in request.names]}
+
+    def _list(self, request: Any) -> dict[str, Any]:
+        prefixes = list(request.prefixes)
+        names = [name for name in self.parameters() if not prefixes or name in prefixes]
+        return {"result": new("rcl_interfaces/msg/ListParametersResult", names=names)}
+
+    def _set(self, request: Any) -> dict[str, Any]:
+        return {"results": [result(self._refusal(each), self._accept, each) for each in request.parameters]}
+
+    def _set_all(self, request: Any) -> dict[str, Any]:
+        refusals = [refusal for each in request.parameters if (refusal := self._refusal(each))]
+        for each in request.parameters if not refusals else []:
+            self._accept(each)
+        return {"result": result("; ".join(refusals))}
+
+    def _refusal(self, parameter: Any) -> str:
+        """Why a parameter cannot be set; empty where it can."""
+        name, value = parameter.name, parameter.value
+        known = self.parameters()
+        if name not in known:
+            return f"there is no parameter {name}"
+        if name == "use_sim_time" and value.type == BOOL and value.bool_value == self.is_sim_time:
+            return ""
+        if name != "watchdog_s":
+            return f"{name} is set when laconic ros2 starts"
+        if value.type != DOUBLE or not 0.0 < value.double_value < math.inf:
+            return f"{name} takes a double above 0"
+        return ""
+
+    def _accept(self, parameter: Any) -> None:
+        if parameter.name == "watchdog_s":
+            self.watchdog_s = parameter.value.double_value
+
+    # ---- diagnostics
+
+    def left_out(self) -> int:
+        """Messages that could not be sent because a peer does not keep up."""
+        outs = (self._odom.out, self._truth.out, self._tf, self._joints, self._imu, self._battery)
+        return sum(each.left_out for each in outs if each is not None)
+
+    def report(self, now_s: float) -> None:
+        """Tells the user of messages that were left out since the last report."""
+        count = self.left_out()
+        if count > self._left_out:
+            self._tell(now_s, "left out", f"a peer does not keep up, so {count - self._left_out} messages were left "
+                       "out")
+        self._left_out = count
+
+    def status(self, refusal: str, slipping: str, late: int) -> Any:
+        """The robot's diagnostic_msgs/DiagnosticStatus."""
+        is_limited, counts = bool(self.base.limited[self.robot]), self.told.counts
+        self.base.limited[self.robot] = False
+        level, message = OK, "drives" if self.base.is_commanded(self.robot) else "waits for cmd_vel"
+        for is_so, how, text in ((is_limited, WARN, "a wheel is at its limit"), (bool(slipping), WARN, slipping),
+                                 (bool(refusal), ERROR, refusal)):
+            if is_so:
+                level, message = max(level, how), text
+        own = f"{self.node.full_name}: "
+        values = {"commands": self.command.count, "late cycles": late,
+                  **{event.removeprefix(own): count for event, count in counts.items() if event.startswith(own)}}
+        values["messages left out"] = self.left_out()
+        pairs = [new("diagnostic_msgs/msg/KeyValue", key=key, value=str(value)) for key, value in values.items()]
+        return new("diagnostic_msgs/msg/DiagnosticStatus", level=level, name=f"{self.node.full_name}: base",
+                   message=message, hardware_id=self.base.scene.name, values=pairs)
+
+
+class Out:
+    """A publisher of a packed message with a stamp."""
+
+    def __init__(self, node: Node, topic: str, kind: str, message: Any, quality: Quality = USUAL,
+                 stamps: Sequence[str] = ("header.stamp",)):
+        self.packed = Packed(kind, message)
+        self._writer, self._message = node.publisher(topic, kind, quality), self.packed.message
+        self._stamps = [self.packed.slot(path, "iI") for path in stamps]
+        self.left_out = 0
+
+    def write(self, stamp: tuple[int, int]) -> None:
+        """Sends it as it is now."""
+        for each in self._stamps:
+            each.put(*stamp)
+        self.left_out += not sent(self._writer, self._message)
+
+
+class OdometryOut:
+    """A publisher of nav_msgs/Odometry."""
+
+    def __init__(self, node: Node, topic: str, frame: str, child: str, variance: float, quality: Quality):
+        message = new(ODOMETRY, child_frame_id=child)
+        message.header.frame_id = frame
+        if variance:
+            for part in (message.pose, message.twist):
+                part.covariance[0::7] = [SURE, SURE, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, UNSURE]
+        self.out = Out(node, topic, ODOMETRY, message, quality)
+        self._place = self.out.packed.slot("pose.pose.position", "2d")
+        self._turn = self.out.packed.slot("pose.pose.orientation.z", "2d")
+        self._velocity = self.out.packed.slot("twist.twist.linear", "2d")
+        self._rate = self.out.packed.slot("twist.twist.angular.z", "d")
+
+    def write(self, stamp: tuple[int, int], pose: tuple[float, float, float],
+              velocity: tuple[float, float, float]) -> None:
+        """Sends a pose, and a velocity in the child's axes."""
+        self._place.put(pose[0], pose[1])
+        self._turn.put(math.sin(0.5 * pose[2]), math.cos(0.5 * pose[2]))
+        self._velocity.put(velocity[0], velocity[1])
+        self._rate.put(velocity[2])
+        self.out.write(stamp)
+
+
+def transform(parent: str, child: str, x_m: float = 0.0, y_m: float = 0.0, yaw_rad: float = 0.0) -> Any:
+    """A TransformStamped at time 0."""
+    made = new(TRANSFORM, child_frame_id=child)
+    made.header.frame_id = parent
+    made.transform.translation.x, made.transform.translation.y = x_m, y_m
+    made.transform.rotation.z, made.transform.rotation.w = math.sin(0.5 * yaw_rad), math.cos(0.5 * yaw_rad)
+    return made
+
+
+def between(outer: tuple[float, float, float], inner: tuple[float, float, float]) -> tuple[float, float, float]:
+    """The pose of the second's frame in the first's, from one body's pose in both."""
+    yaw = outer[2] - inner[2]
+    sine, cosine = math.sin(yaw), math.cos(yaw)
+    return (outer[0] - cosine * inner[0] + sine * inner[1], outer[1] - sine * inner[0] - cosine * inner[1], yaw)
+
+
+def value_of(value: bool | float | str | None) -> Any:
+    """A rcl_interfaces/msg/ParameterValue."""
+    given: dict[str, Any] = {"type": NOT_SET}
+    if isinstance(value, bool):
+        given = {"type": BOOL, "bool_value": value}
+    elif isinstance(value, float):
+        given = {"type": DOUBLE, "double_value": value}
+    elif isinstance(value, str):
+        given = {"type": STRING, "string_value": value}
+    return new("rcl_interfaces/msg/ParameterValue", **given)
+
+
+def result(refusal: str, accept: Callable[[Any], None] = lambda _: None, parameter: Any = None) -> Any:
+    """A rcl_interfaces/msg/SetParametersResult; what is not refused is accepted."""
+    if not refusal:
+        accept(parameter)
+    return new("rcl_interfaces/msg/SetParametersResult", successful=not refusal, reason=refusal)
+
+
+def diagnostics(statuses: Iterable[Any], stamp_ns: int) -> Any:
+    """A diagnostic_msgs/DiagnosticArray."""
+    made = new("diagnostic_msgs/msg/DiagnosticArray", status=list(statuses))
+    made.header.stamp.sec, made.header.stamp.nanosec = divmod(stamp_ns, NANO)
+    return made

@@ -1,0 +1,272 @@
+"""A participant as a ROS 2 middleware makes it: names, quality of service, type hashes, the graph, services.
+
+DDS is PyPI's cyclonedds. Everything is polled from one thread, so that a run does not depend on callbacks.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
+from cyclonedds.core import DDSException
+from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.pub import DataWriter, Publisher
+from cyclonedds.qos import Policy, Qos
+from cyclonedds.sub import DataReader, Subscriber
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+
+from laconic.errors import BadInput
+from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION, WITHOUT_HASHES
+from laconic.ros2.messages import message_class, type_hash
+
+MOST_DOMAIN = 232  # beyond it the ports of UDP end
+NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
+MOST_AT_ONCE = 64  # messages of one reader in one poll
+
+THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
+</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>
+<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers></Discovery></Domain>
+</CycloneDDS>"""
+"""Discovery by unicast on this machine alone, as ROS 2 does for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
+
+_DOMAINS: dict[int, Domain] = {}  # of this process, which may configure each of them once
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Quality of service by ROS's names; writers offer RELIABLE, which matches every reader."""
+
+    depth: int = 10
+    is_latched: bool = False
+
+
+USUAL, LATCHED, TRANSFORMS = Quality(), Quality(depth=1, is_latched=True), Quality(depth=100)
+
+
+def check_name(option: str, name: str) -> str:
+    """A namespace or a name with a leading slash; BadInput for what ROS does not allow."""
+    parts = name.strip("/").split("/") if name.strip("/") else []
+    if "//" in name or not all(NAME.fullmatch(part) for part in parts):
+        raise BadInput(f"{option}: {name} is not a name of ROS; give letters, digits and _ that begin with a letter, "
+                       "such as robot1")
+    return "/" + "/".join(parts)
+
+
+def topic_name(prefix: str, namespace: str, topic: str, suffix: str = "") -> str:
+    """The DDS name of a topic or service: rt/robot1/odom; a name with a leading slash is not in the namespace."""
+    full = topic if topic.startswith("/") else f"{namespace.rstrip('/')}/{topic}"
+    return f"{prefix}{full}{suffix}"
+
+
+class Participant:
+    """One DDS participant, the nodes in it, and their entry in the graph."""
+
+    def __init__(self, domain: int, distribution: str = USUAL_DISTRIBUTION, *, is_local: bool = False,
+                 announces: bool = True):
+        if not 0 <= domain <= MOST_DOMAIN:
+            raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
+        self.gid_bytes, self.domain = GID_BYTES[distribution], domain
+        self.has_hashes, self.announces = distribution not in WITHOUT_HASHES, announces
+        try:
+            if is_local and domain not in _DOMAINS:
+                _DOMAINS[domain] = Domain(domain, THIS_MACHINE)
+            self.dds = DomainParticipant(domain, qos=Qos(Policy.Userdata(b"enclave=/;")))
+        except DDSException:
+            raise BadInput(f"--domain: no participant can join domain {domain}; check the network and CYCLONEDDS_URI, "
+                           "or give --local for this machine alone") from None
+        self.publisher, self.subscriber = Publisher(self.dds), Subscriber(self.dds)
+        self.nodes: list[Node] = []
+        self._topics: dict[tuple[str, str], Any] = {}
+        self._entities: list[Any] = [self.publisher, self.subscriber]
+        graph = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+        self._graph = self._endpoint(DataWriter, "ros_discovery_info", graph, LATCHED) if announces else None
+        self._others = self._endpoint(DataReader, "ros_discovery_info", graph, Quality(100, is_latched=True))
+        self._writers = BuiltinDataReader(self.dds, BuiltinTopicDcpsPublication)
+
+    def node(self, name: str, namespace: str = "/") -> Node:
+        """Another node of this participant."""
+        self.nodes.append(Node(self, name, namespace))
+        return self.nodes[-1]
+
+    def message(self, kind: str, /, **values: Any) -> Any:
+        """A message with this distribution's Gid."""
+        return message_class(kind, self.gid_bytes)(**values)
+
+    # ---- endpoints
+
+    def _endpoint(self, kind: Any, wire_name: str, message: str, quality: Quality, *, of_service: str = "") -> Any:
+        cls = message_class(message, self.gid_bytes, bool(of_service))
+        key = (wire_name, message)
+        if key not in self._topics:
+            self._topics[key] = Topic(self.dds, wire_name, cls)
+        owner = self.publisher if kind is DataWriter else self.subscriber
+        endpoint = kind(owner, self._topics[key], qos=self._qos(kind, message, quality, of_service))
+        self._entities.append(endpoint)
+        return endpoint
+
+    def _qos(self, kind: Any, message: str, quality: Quality, of_service: str) -> Qos:
+        history = Policy.History.KeepLast(quality.depth)
+        policies = [
+            history, Policy.DataRepresentation(use_cdrv0_representation=True),
+            Policy.Reliability.Reliable(MOST_WAIT),
+            Policy.Durability.TransientLocal if quality.is_latched else Policy.Durability.Volatile]
+        if kind is DataWriter:
+            policies.append(Policy.WriterDataLifecycle(autodispose=False))
+            if quality.is_latched:
+                policies.append(Policy.DurabilityService(0, history, -1, -1, -1))
+        user_data = of_service + (f"typehash={type_hash(message, self.gid_bytes)};" if self.has_hashes else "")
+        if user_data:
+            policies.append(Policy.Userdata(user_data.encode()))
+        return Qos(*policies)
+
+    # ---- the graph
+
+    def gid(self, entity: Any) -> Any:
+        """The Gid of an entity."""
+        data = [*entity.guid.bytes] + [0] * (self.gid_bytes - 16)
+        return self.message("rmw_dds_common/msg/Gid", data=data)
+
+    def announce(self) -> None:
+        """Tells the graph which nodes there are, and which endpoints are theirs."""
+        if self._graph is None:
+            return
+        nodes = [self.message(
+            "rmw_dds_common/msg/NodeEntitiesInfo", node_namespace=node.namespace, node_name=node.name,
+            reader_gid_seq=[self.gid(each) for each in node.readers],
+            writer_gid_seq=[self.gid(each) for each in node.writers]) for node in self.nodes]
+        sent(self._graph, self.message("rmw_dds_common/msg/ParticipantEntitiesInfo", gid=self.gid(self.dds),
+                                       node_entities_info_seq=nodes))
+
+    def namesakes(self) -> set[str]:
+        """Full names of nodes that another participant has announced and that are ours, too."""
+        ours, found = {node.full_name for node in self.nodes}, set()
+        own = bytes(self.dds.guid.bytes)
+        for info in polled(self._others):
+            if bytes(info.gid.data)[:16] != own:
+                names = {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in info.node_entities_info_seq}
+                found |= names & ours
+        return found
+
+    def new_writers(self) -> Iterator[tuple[str, str]]:
+        """Topic and type, by their names on the wire, of writers that have come since the last call."""
+        for each in self._writers.take(N=MOST_AT_ONCE):
+            if getattr(each.sample_info, "valid_data", False):
+                yield each.topic_name, each.type_name
+
+    def close(self) -> None:
+        """Leaves the domain, so that peers know at once."""
+        for entity in [*reversed(self._entities), self._writers, *self._topics.values(), self.dds]:
+            entity.__del__()
+        self._entities.clear()
+        self._topics.clear()
+
+    def __enter__(self) -> Participant:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+@dataclass
+class Node:
+    """One node: publishers, subscriptions and services in its namespace."""
+
+    participant: Participant
+    name: str
+    namespace: str = "/"
+    readers: list[Any] = field(default_factory=list)
+    writers: list[Any] = field(default_factory=list)
+    services: list[Service] = field(default_factory=list)
+
+    @property
+    def full_name(self) -> str:
+        """With its namespace: /robot1/laconic."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    def publisher(self, topic: str, message: str, quality: Quality = USUAL) -> Any:
+        """A DataWriter."""
+        wire_name = topic_name("rt", self.namespace, topic)
+        self.writers.append(self.participant._endpoint(DataWriter, wire_name, message, quality))
+        return self.writers[-1]
+
+    def subscription(self, topic: str, message: str, quality: Quality = USUAL) -> Any:
+        """A DataReader, for `polled`."""
+        wire_name = topic_name("rt", self.namespace, topic)
+        self.readers.append(self.participant._endpoint(DataReader, wire_name, message, quality))
+        return self.readers[-1]
+
+    def service(self, name: str, kind: str, answer: Callable[[Any], Any]) -> Service:
+        """A service of a type such as std_srvs/srv/Empty; `answer` makes the response's values of a request."""
+        made = Service(self, name, kind, answer)
+        self.services.append(made)
+        return made
+
+
+class Service:
+    """Requests in, responses out, as rmw_cyclonedds has them: client and number stand before the content.
+
+    rmw_fastrtps has both in the headers of its packets, which cyclonedds does not give to programs, so that clients of
+    it wait in vain. ROS 2 does not promise services between different middlewares either.
+    """
+
+    def __init__(self, node: Node, name: str, kind: str, answer: Callable[[Any], Any]):
+        self.name, self.answer = name, answer
+        self._request, self._response = f"{kind}_Request", f"{kind}_Response"
+        participant, pair = node.participant, f"serviceid={os.urandom(8).hex()};"
+        reader = topic_name("rq", node.namespace, name, "Request")
+        writer = topic_name("rr", node.namespace, name, "Reply")
+        make = partial(participant._endpoint, quality=USUAL, of_service=pair)
+        self.reader, self.writer = make(DataReader, reader, self._request), make(DataWriter, writer, self._response)
+        self._respond = message_class(self._response, participant.gid_bytes, True)
+        node.readers.append(self.reader)
+        node.writers.append(self.writer)
+
+    def poll(self, wrong: Callable[[str], None]) -> int:
+        """Answers what has come, and returns how many requests that were."""
+        count = 0
+        for request in polled(self.reader, lambda: wrong(f"{self.name}: a request that cannot be read is ignored")):
+            values = self.answer(request)
+            sent(self.writer, self._respond(client=request.client, sequence=request.sequence, **values))
+            count += 1
+        return count
+
+
+def polled(reader: Any, wrong: Callable[[], None] = lambda: None, most: int = MOST_AT_ONCE) -> list[Any]:
+    """What has come since the last poll, at most so many; calls `wrong` for each message that cannot be read."""
+    found = []
+    for _ in range(most):
+        try:
+            taken = reader.take(N=1)
+        except DDSException:
+            break
+        except Exception:  # whatever cyclonedds raises for bytes that are not this type
+            wrong()
+            continue
+        if not taken:
+            break
+        if hasattr(taken[0], "__idl__"):  # no news of a writer that has gone
+            found.append(taken[0])
+    return found
+
+
+def sent(writer: Any, message: Any) -> bool:
+    """Writes a message; False where a reader does not keep up, so that the message is left out."""
+    try:
+        writer.write(message)
+    except DDSException:
+        return False
+    return True
+
+
+def ros_type(name: str) -> str:
+    """The ROS name of a type on the wire; as it is where it is not ROS's."""
+    parts = name.split("::")
+    is_ros = len(parts) == 4 and parts[2] == "dds_" and parts[3].endswith("_")
+    return f"{parts[0]}/{parts[1]}/{parts[3][:-1]}" if is_ros else name
