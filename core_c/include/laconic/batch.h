@@ -76,9 +76,8 @@ bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch
 
 /* Makes the constants of a lane anew from its kind, which the program has changed. Load the lane, and every other
  * one of that kind, with a state of the new model afterwards. Returns false, and changes nothing, where the new kind
- * is stepped in another way than the old: by another method (`chosen` of its integrator), of other damping beside
- * the step (`stiff`), with another number of wheels, with a slope or without. Precondition: 0 <= lane < lane_count.
- * O(1). */
+ * steps in another way than the old one. Examples are another method (`chosen` of its integrator), fast instead of slow
+ * damping (`stiff`), another number of wheels, or a slope. Precondition: 0 <= lane < lane_count. O(1). */
 bool laconic_batch_renew(laconic_batch *batch, int32_t lane);
 
 /* A lane's state and input, to and from the structs of laconic.h, bit by bit; what is for wheels that the lane's
@@ -111,17 +110,16 @@ typedef enum laconic_batch_row {
 } laconic_batch_row;
 laconic_real *laconic_batch_row_of(const laconic_batch *batch, laconic_batch_row row, int32_t wheel);
 
-/* Takes `steps` steps of all lanes of some blocks with the inputs held, as laconic_run() does of one: a lane stops
- * at the first step that is refused, as it was before it, and the others continue. `status` and `missed` tell of
- * each lane. Returns how many lanes were refused. Precondition: 0 <= first_block, first_block + blocks <=
- * block_count. */
+/* Takes `steps` steps of all lanes of some blocks with the inputs held, as laconic_run() does of one. A lane stops
+ * before the first step that is refused, and the others continue. `status` and `missed` report on each lane. Returns
+ * how many lanes were refused. Precondition: 0 <= first_block, first_block + blocks <= block_count. */
 int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t steps);
 
-/* The same with new voltages after every `steps_each` steps, `samples` times. voltage_V has for each sample a row for
- * each of the shape's wheels, of lane_count numbers [V]; they are written into the rows of voltages before their steps,
- * so that these have those of a lane's last step, or of the one that was refused: it takes none after that. As bits it
- * is laconic_batch_run() for each sample; it costs less where kinds are many, since a few blocks take all their steps
- * before the next. */
+/* The same with new voltages after every `steps_each` steps, `samples` times. voltage_V has for each sample a row
+ * for each of the shape's wheels, of lane_count numbers [V]; they are written into the rows of voltages before their
+ * steps. Afterwards the rows hold the voltages of a lane's last step, or of the one that was refused, after which it
+ * takes none. As bits it is laconic_batch_run() for each sample; it costs less where kinds are many, since a few
+ * blocks take all their steps before the next. */
 int32_t laconic_batch_run_sampled(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t samples,
                                   uint64_t steps_each, const laconic_real *voltage_V);
 
@@ -129,7 +127,7 @@ int32_t laconic_batch_run_sampled(laconic_batch *batch, int32_t first_block, int
 void laconic_batch_observe(laconic_batch *batch, int32_t first_block, int32_t blocks);
 
 /* For populations whose vehicles differ in their numbers: arrays with one item for each vehicle. Each of the first
- * three returns how many vehicles were refused, whose `status` is not OK; the single function tells why. */
+ * three returns how many vehicles were refused, whose `status` is not OK; the single function reports the reason. */
 
 /* Kinds as laconic_batch_kind_of() makes them; of a vehicle that is refused the kind is not written. motors: NULL, or
  * those that laconic_motor_fit() fits to a copy of each vehicle before. About 1 us for each. */

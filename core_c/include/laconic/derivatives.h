@@ -59,10 +59,10 @@ typedef struct laconic_model_change {
 
 /* How a model changes with its vehicle: `by` has a change in each member that is a number of type laconic_real, and
  * 0 in members that do not change. Exact, also where damping rates coincide. An own value of a wheel (own_radius_m
- * …) that is 0 stands for the vehicle's and follows that; its own change is not read. Does not act, as on every
- * step: com_z_m, supports, friction coefficients, drive. If wheels share a constraint (two on one axle line), a
- * change that separates them has no derivative. The constraint then follows the least-squares fit of both. `model`:
- * that of `vehicle`. Refuses METHOD_WITHOUT_FRICTION. O(N). */
+ * …) that is 0 means the vehicle's and follows it; its own change is not read. Does not act, as on every step:
+ * com_z_m, supports, friction coefficients, drive. If wheels share a constraint (two on one axle line), a change
+ * that separates them has no derivative. The constraint then follows the least-squares fit of both. `model`: that of
+ * `vehicle`. Refuses METHOD_WITHOUT_FRICTION. O(N). */
 laconic_status laconic_model_tangent(laconic_model_change *change, const laconic_model *model,
                                      const laconic_vehicle *vehicle, const laconic_vehicle *by);
 

@@ -48,10 +48,10 @@ typedef struct laconic_filter_settings {
     laconic_real position_std_m; /* of x and of y */
     laconic_real heading_std_rad;
     laconic_real bias_std_rad_per_s; /* this and its drift 0: no bias is estimated */
-    /* how well instruments read: standard deviations of one reading. White noise on top of rounding to counts is √(1/6)
-     * of a count, where the place between two counts at the start is not known, too. */
+    /* how well instruments read: standard deviations of one reading. White noise on top of rounding to counts is
+     * √(1/6) of a count, where the place between two counts at the start is also not known. */
     laconic_real encoder_std_rad[LACONIC_MAX_WHEELS]; /* of the wheel's angle; 0: that wheel has no encoder */
-    laconic_real yaw_rate_std_rad_per_s;              /* 0: there is no gyro                                */
+    laconic_real yaw_rate_std_rad_per_s;              /* 0: without a gyro                                   */
 } laconic_filter_settings;
 
 /* ----------------------------------------------------------------------------------- filter -- */

@@ -34,7 +34,7 @@
  *          Ξ             wheel matrix (4.3, 4.4): χ' = Ξν; the row of a wheel has the factor R/R_i
  *          A             inertia matrix E + Σ J_i/(M R²) Ξ_iᵀΞ_i (4.6), E + λ²ΞᵀΞ for equal wheels: the kinetic energy
  *                        is ½ M R² νᵀAν
- *          K             (Aν)₃, which free motion without constraints conserves beside the energy
+ *          K             (Aν)₃, which free motion without constraints conserves, like the energy
  *          ζ, G, g       the velocity in principal coordinates, ν = Gζ; g is the third row of G, so ν3 = g·ζ
  *          w, r, b       of ζ' = (g·ζ)(ζ × w) − diag(r)ζ + b: axis of the gyroscopic term, damping rates, forcing
  *          κ             multipliers of the constraints [rad/s²]: M R κ is a force, M R² κ the torque of a brake
@@ -93,11 +93,11 @@ size_t laconic_message(const laconic_refusal *why, char *text, size_t size);
 /* The same without the field, for callers that name the field themselves. */
 size_t laconic_explanation(const laconic_refusal *why, char *text, size_t size);
 
-/* "mass_kg", "wheel_x_m" … ; "" for a number that is no field. */
+/* "mass_kg", "wheel_x_m" … ; "" for an unknown number. */
 const char *laconic_field_name(laconic_field field);
 
-/* The key of a scene: "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; of an input the name of its signal;
- * "" for a number that is no field. */
+/* The key of a scene: "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; of an input the name of its
+ * signal; "" for an unknown number. */
 const char *laconic_field_path(laconic_field field);
 
 /* Further facts of vehicle.h about a field. `items`: how many items it has, 0 where it is a single number. */
@@ -108,10 +108,10 @@ typedef struct laconic_field_traits {
     int32_t items;
 } laconic_field_traits;
 
-/* For hosts and tools that make their own lists of fields; NULL for a number that is no field. */
+/* For hosts and tools that make their own lists of fields; NULL for an unknown number. */
 const laconic_field_traits *laconic_field_traits_of(laconic_field field);
 
-/* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is no status. */
+/* "not finite", "wheel not set" … : a few words; "unknown status" for an unknown number. */
 const char *laconic_status_name(laconic_status status);
 
 /* ----------------------------------------------------------------------------- arithmetic -- */
@@ -282,7 +282,7 @@ typedef struct laconic_integrator {
     laconic_real collocation[3][30];         /* weights of each axis; with stretches the φ of the first panel's */
     laconic_real collocation_of_rest[3][30]; /* and those of the rest */
 #endif
-    bool stiff; /* damping is fast beside the step: h·r_max >= 0.3       */
+    bool stiff; /* damping is fast for the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
 typedef struct laconic_method {

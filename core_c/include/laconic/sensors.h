@@ -26,7 +26,7 @@ struct laconic_plant;
 struct laconic_refusal;
 
 #ifndef LACONIC_IMU_MAX_DELAY
-#define LACONIC_IMU_MAX_DELAY 64 /* steps; each needs room for three numbers */
+#define LACONIC_IMU_MAX_DELAY 64 /* steps; each needs space for three numbers */
 #endif
 #if LACONIC_IMU_MAX_DELAY < 0 || LACONIC_IMU_MAX_DELAY > 4096
 #error "laconic: LACONIC_IMU_MAX_DELAY must be from 0 to 4096"
@@ -63,7 +63,7 @@ typedef struct laconic_encoder_settings {
 /* All zero: the sensors of a scene without any. */
 typedef struct laconic_sensor_settings {
     laconic_imu_settings imu;
-    int32_t encoder_wrap; /* encoders show 0 … wrap − 1 and begin again; 0: the whole int32_t, which wraps, too */
+    int32_t encoder_wrap; /* encoders show 0 … wrap − 1 and begin again; 0: the int32_t itself, which also wraps */
     laconic_encoder_settings encoder[LACONIC_MAX_WHEELS];
 } laconic_sensor_settings;
 
@@ -95,7 +95,7 @@ typedef struct laconic_sensor_settings {
 #define LACONIC_ENCODER_FIELDS(X, of) \
     X(of, 95, WHEEL_ENCODER_WRAP, wrap, encoder_wrap, INTEGER, NOT_NEGATIVE, NEVER)
 
-/* Of each wheel. */
+/* One row for each wheel. */
 #define LACONIC_WHEEL_ENCODER_FIELDS(X, of) \
     X(of, 93, WHEEL_ENCODER_COUNTS, counts_per_turn, encoder_counts_per_turn, INTEGER, NOT_NEGATIVE, NEVER) \
     X(of, 94, WHEEL_ENCODER_GEAR_RATIO, gear_ratio, encoder_gear_ratio, REAL, FINITE, NEVER)
@@ -139,7 +139,7 @@ int32_t laconic_encoder_place(const laconic_encoder *encoder, int32_t counts_per
 /* How often the shaft has passed the index forwards, less how often backwards: count/counts_per_turn, rounded down. */
 int64_t laconic_encoder_turns(const laconic_encoder *encoder, int32_t counts_per_turn);
 
-/* What it shows: the count modulo `wrap`, or for 0 the lower 32 bits of the count as an int32_t. */
+/* Returns the encoder's reading: the count modulo `wrap`, or for 0 the lower 32 bits of the count as an int32_t. */
 int32_t laconic_encoder_shown(const laconic_encoder *encoder, int32_t wrap);
 
 #if LACONIC_MAX_WHEELS > 3
@@ -200,7 +200,7 @@ laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sen
 /* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a
  * sensor must see each. In addition to their refusals, OVERFLOW if an encoder was turned by more than 2147483520
  * counts in a step (WHEEL_ENCODER_COUNTS, item: the wheel). Also OVERFLOW if a sample is beyond ± 10¹⁵ m/s² (IMU_X
- * or IMU_Y, the farther). That step has been taken. */
+ * or IMU_Y, the farther). The step has been taken then. */
 laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plant *plant, const laconic_input *held,
                                    uint64_t steps, struct laconic_refusal *why);
 laconic_status laconic_sensors_run_sampled(laconic_sensors *sensors, struct laconic_plant *plant,
@@ -218,9 +218,9 @@ laconic_status laconic_sensors_after(laconic_sensors *sensors, const struct laco
                                      struct laconic_refusal *why);
 
 /* Inertial acceleration of the body's origin in body axes, v' + ω × v. On ideal ground exactly that of this moment
- * with this input. Of a vehicle with friction the mean over the last step, because contact forces exist for a
- * complete step: the change of velocity over it, in the axes of its middle (before the first step as if the motion
- * had continued; `sensors` may be NULL only on ideal ground). */
+ * with this input. With friction it is the mean over the last step, because contact forces exist for a complete
+ * step: the change of velocity over it, in the axes of its middle (before the first step as if the motion had
+ * continued; `sensors` may be NULL only on ideal ground). */
 void laconic_acceleration_body(laconic_real acceleration_m_per_s2[2], const laconic_sensors *sensors,
                                const struct laconic_plant *plant, const laconic_input *input);
 

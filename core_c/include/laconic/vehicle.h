@@ -78,8 +78,7 @@ typedef struct laconic_drive {
     laconic_real supply_resistance_ohm;  /* by which the supply sags under the motors' currents      */
     laconic_real current_limit_A;        /* of each motor; 0: no limit                               */
     laconic_real winding_resistance_ohm; /* R_a: a motor's torque on its wheel is c1 R_a per ampere */
-    laconic_real
-        viscous_friction_Nms; /* n² d, at the wheel: the part of c2 that is no back-EMF; all of c2 where that is
+    laconic_real viscous_friction_Nms; /* n² d, at the wheel: the part of c2 without back-EMF; all of c2 where that is
                                             less */
 } laconic_drive;
 
