@@ -21,12 +21,12 @@ LEFT_OUT = ("session", "run")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
               help="Write the scene with the values found; - for stdout.")
 @click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
-              help="Parameters that may change. Geometry: radius (of each wheel), distance (of all wheels, one factor), "
-              "centre-of-mass, place and heading (of the robot against the recorded pose), axle, roller (angles of each "
-              "wheel), common-radius (one of all wheels). On ground with friction: drag (of rollers), friction, "
-              "axle-friction, wheel-friction (of each, as a share), viscous (of motors), controller (of the wheels' "
-              "speeds). From voltages or currents: mass, yaw-inertia, wheel-inertia, motor-gain, motor-damping, "
-              "resistance, torque-constant.")
+              help="Parameters that may change. Geometry: radius (of each wheel), distance (of all wheels, one "
+              "factor), centre-of-mass, place and heading (of the robot against the recorded pose), axle, roller "
+              "(angles of each wheel), common-radius (one of all wheels). On ground with friction: drag (of rollers), "
+              "friction, axle-friction, wheel-friction (of each, as a share), viscous (of motors), controller (of the "
+              "wheels' speeds). From voltages or currents: mass, yaw-inertia, wheel-inertia, motor-gain, "
+              "motor-damping, resistance, torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
