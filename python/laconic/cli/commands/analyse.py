@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 @click.option("--straight", type=(float, float), metavar="NU1 NU2",
               help="Constant voltages for this straight motion, in rad/s, instead of the scene's inputs.")
 @click.option("--start", type=(float, float, float), metavar="NU1 NU2 NU3",
-              help="Where the free motion starts, in rad/s, instead of the scene's start.")
-@click.option("--parameter", metavar="NAME", help="What the bifurcation diagram varies: nu1, nu2, input_scale, or a "
+              help="Start of the free motion in rad/s, instead of the scene's start.")
+@click.option("--parameter", metavar="NAME", help="Parameter of the bifurcation diagram: nu1, nu2, input_scale, or a "
               "number of [vehicle] such as com_y_m.")
-@click.option("--from", "low", type=float, metavar="A", help="Where the bifurcation diagram begins.")
-@click.option("--to", "high", type=float, metavar="B", help="Where it ends.")
+@click.option("--from", "low", type=float, metavar="A", help="Beginning of the bifurcation diagram.")
+@click.option("--to", "high", type=float, metavar="B", help="End of the diagram.")
 @json_flag("Machine-readable result on stdout.")
 def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, straight: tuple[float, float] | None,
             start: tuple[float, float, float] | None, parameter: str | None, low: float | None,
