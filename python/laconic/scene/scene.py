@@ -280,7 +280,7 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], base=parts["base"], in_degrees=parts["in_degrees"],
+        sensors=parts["sensors"], base=parts.get("base"), in_degrees=parts["in_degrees"],
         hinges=parts.get("hinges", ()), wheel_places=parts.get("wheel_places", ())))
 
 

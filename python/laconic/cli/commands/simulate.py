@@ -47,18 +47,18 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 @click.option("--errors", "errors_wanted", is_flag=True,
               help="Write the estimated error of each row as further columns of --out.")
 @click.option("--enclose", "enclose_wanted", is_flag=True,
-              help="Enclose the true motion and prove how far the core is from it; --out gets columns of both.")
+              help="Enclose the exact solution and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
             plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool, enclose_wanted: bool,
             json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
-    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
-    gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
-    would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
-    the exit status is 1. The estimated error of the steps and of rounding is printed at the end. --enclose proves
-    intervals that contain the exact motion of the file's numbers. See docs/accuracy.md.
+    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
+    coefficient or the height of the centre of mass in the scene, the ground is watched. The first wheel that would slip
+    or lift is named on stderr. If a step is refused, everything before it is written, and the exit status is 1. The
+    estimated error of the steps and of rounding is printed at the end. --enclose proves intervals that contain the
+    exact motion of the file's numbers. See docs/accuracy.md.
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
@@ -144,8 +144,7 @@ def signals_to_enclose(scene: Scene) -> tuple[str, ...]:
 
 def enclosed(run: Trajectory) -> Enclosure:
     """Encloses the motion of a run, and gives the run its columns."""
-    from laconic.tools.enclosure.study import study_of
-    from laconic.tools.enclosure.tables import as_json, columns_of, lines_of
+    from laconic.tools.enclosure.study import as_json, columns_of, lines_of, study_of
 
     study = study_of(run)
     columns = columns_of(study)

@@ -19,8 +19,7 @@ from laconic.scene.keys import MOTOR_CIRCUITS
 from laconic.scene.scene import check_without_hinges
 from laconic.scene.table import entries_of
 from laconic.tools.enclosure.balls import ball, times
-from laconic.tools.enclosure.equation import angle, equation_of
-from laconic.tools.enclosure.loads import Stretch
+from laconic.tools.enclosure.equation import Stretch, angle, equation_of
 from laconic.tools.enclosure.motion import Motion
 from laconic.tools.enclosure.prepared import prepared_equation
 from laconic.tools.enclosure.state import Beginning
