@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-DESCRIPTIONS = {"Rigid vehicles": "modelDescription.xml", "Vehicles with hinges": "fmu/articulated/modelDescription.xml"}
+DESCRIPTIONS = {"Rigid vehicles": "modelDescription.xml",
+                "Vehicles with hinges": "fmu/articulated/modelDescription.xml"}
 HEAD = "| variable | unit or type | start | description |\n| --- | --- | --- | --- |"
 
 
