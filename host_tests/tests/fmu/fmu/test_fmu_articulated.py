@@ -177,6 +177,21 @@ def test_a_command_that_jumps_in_event_mode_keeps_the_momenta(version: int, tmp_
 
 
 @BOTH
+def test_a_rate_at_the_start_moves_a_loader_that_stood(version: int, tmp_path: Path) -> None:
+    scene = read_scene("wheel_loader").with_run(real="double")
+    with Importer(make_fmu(scene, tmp_path / "scene.fmu", version=version)) as importer:
+        importer.enter_initialization()
+        assert importer.set("steering_rate_rad_per_s", 0.2) == OK
+        importer.must("ExitInitializationMode")
+        plant = plant_of(scene, importer)
+        row = plant.vehicle.input_row({f"steering_rate_rad_per_s[{scene.hinges[0].name}]": 0.2})
+        assert importer.step(0.0, scene.run.step_s) == OK
+        plant.run(row)
+        assert abs(importer.get("yaw_rate_rad_per_s")[0]) > 0.01
+        assert values_of(importer, OF_MOTION) == pytest.approx(motion_of(plant), rel=1e-12, abs=1e-15)
+
+
+@BOTH
 def test_an_input_that_has_no_effect_is_logged_once(version: int) -> None:
     with Importer(generic(version)) as importer:
         importer.initialize()
