@@ -71,7 +71,7 @@ typedef struct laconic_body {
 typedef struct laconic_articulated_vehicle {
     laconic_vehicle base;
     int32_t wheel_body[LACONIC_MAX_WHEELS]; /* number of the wheel's body; 0: the carriage */
-    int32_t body_count;                     /* H: bodies besides the carriage              */
+    int32_t body_count;                     /* H: bodies without the carriage               */
     laconic_body body[LACONIC_MAX_BODIES];  /* body b is body[b − 1]                       */
 } laconic_articulated_vehicle;
 
@@ -118,8 +118,8 @@ typedef struct laconic_articulated_vehicle {
 
 #define LACONIC_ARTICULATED_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_FIELD_OF_##IDENTIFIER = number,
 
-/* Numbers of a refusal's field besides those of laconic_field; converted to it they stay what they are. The item is the
- * number of the body; of WHEEL_BODY that of the wheel, of TWIST that of the component. */
+/* Numbers of a refusal's field in addition to those of laconic_field; converted to it they keep their values. The
+ * item is the number of the body; of WHEEL_BODY that of the wheel, of TWIST that of the component. */
 typedef enum laconic_articulated_field {
     LACONIC_ARTICULATED_FIELDS(LACONIC_ARTICULATED_FIELD_NUMBER) LACONIC_ARTICULATED_FIELD_COUNT = 121
 } laconic_articulated_field;
@@ -223,7 +223,7 @@ laconic_status laconic_articulated_prepare(laconic_articulated_model *model, con
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* What acts and what is commanded at one moment. All zero: only damping acts, and prescribed hinges are held. */
+/* Everything that acts or is commanded at one moment. All zero: only damping acts, and prescribed hinges are held. */
 typedef struct laconic_articulated_input {
     laconic_input base; /* voltages and torques of all wheels; forces on body 0, points from S_0                 */
     laconic_real hinge_voltage_V[LACONIC_MAX_BODIES];               /* motor hinges; hinge b is item b − 1        */
@@ -291,7 +291,7 @@ typedef enum laconic_articulated_method {
 
 #define LACONIC_ARTICULATED_METHOD_COUNT 4
 
-/* "auto", "rk4", "circle", "moebius-4"; "" for a number that is no method. */
+/* "auto", "rk4", "circle", "moebius-4"; "" for an unknown number. */
 const char *laconic_articulated_method_name(int32_t method);
 
 /* The method of that name; −1: there is none. */
@@ -340,7 +340,7 @@ laconic_status laconic_articulated_step(const laconic_articulated_model *model,
 
 /* -------------------------------------------------------------------------------- outputs -- */
 
-/* What follows from the state alone. Arrays have one number for each of the model's bodies or wheels. */
+/* Outputs that follow from the state alone. Arrays have one number for each of the model's bodies or wheels. */
 typedef struct laconic_articulated_motion {
     laconic_real velocity_m_per_s[2], yaw_rate_rad_per_s; /* of S_0, body axes                          */
     laconic_real x_m, y_m, heading_rad;                   /* of S_0; heading unwrapped                  */

@@ -15,6 +15,7 @@ import pytest
 import laconic
 from laconic.base.paths import SOURCE_DIR
 from laconic.cli.main import commands
+from laconic_build.site.__main__ import CONFIG
 from laconic_build.site.pages import GROUPS, stage
 
 PAGE = (SOURCE_DIR / "docs/architecture.md").read_text(encoding="utf-8")
@@ -155,9 +156,10 @@ def test_every_command_and_each_of_its_options_is_in_the_reference_of_commands(p
 
 
 def test_every_variable_of_the_fmus_and_every_frame_of_the_wire_is_in_a_reference(pages: Path) -> None:
-    root = ElementTree.parse(SOURCE_DIR / "modelDescription.xml").getroot()
     fmi, wire = text(pages, "reference-fmi"), text(pages, "wire")
-    assert all(f"`{each.get('name')}" in fmi for each in root.iterfind(".//ModelVariables/*"))
+    for name in ("modelDescription.xml", "fmu/articulated/modelDescription.xml"):
+        root = ElementTree.parse(SOURCE_DIR / name).getroot()
+        assert all(f"`{each.get('name')}" in fmi for each in root.iterfind(".//ModelVariables/*"))
     frames = cantools.database.load_file(str(SOURCE_DIR / "firmware_stub/laconic.dbc")).messages
     assert len(frames) > 20 and [each.name for each in frames if each.name not in wire] == []
 
@@ -165,6 +167,16 @@ def test_every_variable_of_the_fmus_and_every_frame_of_the_wire_is_in_a_referenc
 def test_every_page_has_its_place_in_the_table_of_contents(pages: Path) -> None:
     listed = {name for names in GROUPS.values() for name in names}
     assert {path.stem for path in pages.glob("*.md")} - {"index"} == listed
+
+
+def test_the_site_has_its_configuration_with_the_styles_and_scripts_that_it_names() -> None:
+    config = (CONFIG / "conf.py").read_text(encoding="utf-8")
+    named = re.findall(r'^html_\w+_files = \["(\S+)"\]$', config, re.MULTILINE)
+    assert len(named) > 1 and [name for name in named if not (CONFIG / "static" / name).is_file()] == []
+
+
+def test_a_link_whose_text_is_wrapped_leads_where_the_site_has_it(pages: Path) -> None:
+    assert re.search(r"\]\((?:\.\./|docs/)", "".join(path.read_text("utf-8") for path in pages.glob("*.md"))) is None
 
 
 # ---- The table of docs/python.md names parameters as the code has them, so that what it shows can be given by

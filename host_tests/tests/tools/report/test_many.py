@@ -106,7 +106,7 @@ def test_a_peer_that_differs_stops_the_race(monkeypatch: pytest.MonkeyPatch, cap
 
 def test_the_pages_command_prints_the_cores_rates_and_what_is_missing(without_peers,
                                                                       capsys: pytest.CaptureFixture[str]):
-    words = re.findall(r"^    laconic (benchmark .*)$", PAGE, re.MULTILINE)[0].split()
+    words = re.findall(r"^    laconic (benchmark batch)$", PAGE, re.MULTILINE)[0].split()
     assert run([*words, "--lanes", "40", "--rounds", "1", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert [(row["who"], row["real"]) for row in found["rows"]] == [

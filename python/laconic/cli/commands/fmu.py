@@ -29,14 +29,14 @@ from laconic_fmu.network import TX_CLOCKS
 @click.option("--derivatives", is_flag=True,
               help="Co-Simulation only: partial derivatives are those of each step, by its start and its inputs.")
 @click.option("--estimate", is_flag=True,
-              help="Co-Simulation only: outputs estimate how far the run is from the true motion.")
+              help="Co-Simulation only: outputs estimate how far the run is from the exact solution.")
 @click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
 @click.option("--bus", type=click.Choice(("can",)),
               help="The vehicle's CAN node as a network FMU by FMI-LS-BUS (--fmi 3), instead of its plain variables.")
 @click.option("--drives", type=click.Choice(DRIVE_PROTOCOLS),
               help="With --bus: motor drives that play from the start; else the node speaks its own frames.")
 @click.option("--tx-clock", type=click.Choice(TX_CLOCKS),
-              help=f"With --bus: how it tells that it sends.  [default: {TX_CLOCKS[0]}]")
+              help=f"With --bus: how it announces its frames.  [default: {TX_CLOCKS[0]}]")
 @click.option("-o", "--out", type=OutputFile(), metavar="F.fmu",
               help="File to write; SCENE_fmi3.fmu if not given.")
 @json_flag()

@@ -26,9 +26,9 @@ from laconic.scene import read_scene, rigid_scene_names
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
     """Measures what accuracy costs: error against run time, stability, sizes; of robots, or of the project itself.
 
-    With --scene the page is about that robot. Without, it is about the project, and measures drift, extremes and other
-    integrators besides; the project's goals are a page of their own, goals.html. Writes index.html (one file, opens
-    offline), report.json and a CSV for each table; the folder work beside them keeps the programs that were measured.
+    With --scene the page is about that robot. Without, it is about the project, and also measures drift, extremes and
+    other integrators. The project's goals are on their own page, goals.html. Writes index.html (one file, opens
+    offline), report.json and a CSV for each table; the folder work next to them keeps the programs that were measured.
     A measurement whose tools are not installed is left out and named.
     """
     from laconic.tools.report.collect import collect

@@ -50,8 +50,8 @@ def command(reference: str, method: str | None, step_s: float | None, real: str 
     case). A step that does not divide a segment is shortened to the next that does. Exit status 1 when a case is
     refused or over the tolerance.
 
-    With --enclose the errors are proved bounds, and REFERENCE may be a scene, by path or name: see docs/accuracy.md.
-    A file's own states must lie inside the enclosure, else the exit status is 1, too.
+    With --enclose the errors are proved bounds, and REFERENCE may be a scene, by path or name: see docs/accuracy.md. A
+    file's own states must also lie inside the enclosure, or the exit status is 1.
     """
     check_positive(step_s, tolerance)
     if enclose_wanted and is_scene(reference):
