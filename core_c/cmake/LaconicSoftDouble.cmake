@@ -1,5 +1,5 @@
 # laconic_soft_double(<target>): adds soft_double.c to a library in double precision where the processor has none and
-# libgcc rounds some differences wrongly; the file's own conditions decide. docs/soft-double.md has the whole story.
+# libgcc rounds some differences wrongly; the file's own conditions decide. docs/c.md explains it.
 
 include(CheckCSourceCompiles)
 set(laconic_soft_double_file "${CMAKE_CURRENT_LIST_DIR}/../optional/soft_double/soft_double.c")

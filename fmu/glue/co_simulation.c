@@ -9,6 +9,10 @@
 /* Importers add up their times and end a run with the remainder; up to this part of an internal step it is no step. */
 #define NO_STEP 1e-6
 
+/* Internal steps of one communication step at most, which take some minutes. Importers that can return early after each
+ * internal step need no limit. */
+#define MOST_STEPS 100000000U
+
 /* With step_s = 0, the part of a communication step by which the importer's time may be wrong. */
 #define OFF_WITHOUT_STEP 1e-3
 
@@ -52,11 +56,9 @@ static fmu_status check_interval(const fmu_instance *instance, double at_s, doub
     if (!fmu_is_finite(at_s)) return fmu_refuse(instance, "the step starts at %g s: that is not finite", at_s);
     if (!(step_s > 0.0))
         return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must be more than 0", step_s);
-    if (!(off_s <= most_s && off_s >= -most_s))
-        return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
+    if (!(off_s <= most_s && off_s >= -most_s)) return fmu_refuse_start(instance, at_s, now_s);
     if (fmu_clock_passes_stop(clock, now_s + step_s, internal_s))
-        return fmu_refuse(instance, "the step from %.15g s to %.15g s goes beyond the stop time %.15g s", now_s,
-                          now_s + step_s, clock->stop_s);
+        return fmu_refuse_end(instance, now_s, now_s + step_s);
     return FMU_OK;
 }
 
@@ -64,6 +66,14 @@ static fmu_status change_step(fmu_instance *instance, double step_s) {
     const fmu_status status = fmu_model_set_step(instance, step_s);
     if (status == FMU_OK) fmu_clock_change_step(&instance->clock, step_s);
     return status;
+}
+
+static fmu_status check_count_of_steps(const fmu_instance *instance, double step_s, double own_s, uint64_t steps) {
+    if (steps <= MOST_STEPS || (instance->between_steps != NULL && instance->early_return_allowed)) return FMU_OK;
+    return fmu_refuse(instance,
+                      "the communication step of %.15g s would be %.15g internal steps of %.15g s (step_s) without a "
+                      "return: take %.15g s or less",
+                      step_s, (double)steps, own_s, MOST_STEPS * own_s);
 }
 
 /* Counts the internal steps; the clock keeps the count for the next communication step of the same length. */
@@ -78,6 +88,7 @@ static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *s
     if (own_s > 0.0) {
         if (clock->step_s != own_s) status = change_step(instance, own_s);
         if (status == FMU_OK) status = fmu_model_count_steps(instance, step_s, own_s, steps);
+        if (status == FMU_OK) status = check_count_of_steps(instance, step_s, own_s, *steps);
     } else {
         const double off = step_s - clock->step_s;
         if (!(off <= SAME_STEP * step_s && off >= -SAME_STEP * step_s)) status = change_step(instance, step_s);
@@ -101,24 +112,47 @@ static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_s
         fmu_enter(instance, FMU_INTERMEDIATE);
         end->early = instance->between_steps(instance, k + 1 == steps) && k + 1 < steps;
         fmu_enter(instance, FMU_STEP);
-        if (end->early) return FMU_OK;
+        if (end->early || instance->cancelled) return FMU_OK;
     }
     return FMU_OK;
 }
 
-/* A refused communication step leaves everything as it was before the call. */
+/* Another thread calls it while a communication step of several internal ones runs, which then ends soon. A flag is
+ * enough: it changes once, and the step reads it again and again. */
+fmu_status fmu_cancel_step(fmu_instance *instance) {
+    if (!instance->running)
+        return fmu_refuse(
+            instance,
+            "CancelStep is not allowed in %s: no step is running; another thread may call it while DoStep "
+            "runs",
+            fmu_mode_names[instance->mode]);
+    instance->cancelled = true;
+    return FMU_OK;
+}
+
+static fmu_status discard_cancelled(const fmu_instance *instance, uint64_t ticks) {
+    return fmu_log(instance, FMU_DISCARD, FMU_LOG_DISCARD,
+                   "the communication step is cancelled after %llu internal steps and taken back",
+                   (unsigned long long)(instance->clock.ticks - ticks));
+}
+
+/* A refused or cancelled communication step leaves everything as it was before the call. */
 static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     const uint64_t ticks = instance->clock.ticks;
     fmu_model_motion before;
     uint64_t taken = 0;
     fmu_status status;
     fmu_model_save_motion(&instance->model, &before);
+    instance->cancelled = false;
+    instance->running = true;
     if (instance->between_steps != NULL) {
         status = run_with_updates(instance, steps, end);
     } else {
         status = fmu_model_run(instance, steps, &taken);
         instance->clock.ticks += taken;
     }
+    instance->running = false;
+    if (status == FMU_OK && instance->cancelled) status = discard_cancelled(instance, ticks);
     if (status == FMU_OK) return status;
     fmu_model_restore_motion(&instance->model, &before);
     instance->clock.ticks = ticks;

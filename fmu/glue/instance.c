@@ -104,8 +104,11 @@ void fmu_free(fmu_instance *instance) {
 fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s) {
     if (!fmu_is_finite(start_s)) return fmu_refuse(instance, "the start time %g is not finite", start_s);
     if (stop_defined && stop_s != stop_s) return fmu_refuse(instance, "the stop time %g is not finite", stop_s);
-    if (stop_defined && !(stop_s >= start_s))
-        return fmu_refuse(instance, "the stop time %g s is before the start time %g s", stop_s, start_s);
+    if (stop_defined && !(stop_s >= start_s)) {
+        const int digits = fmu_digits(stop_s, start_s, start_s);
+        return fmu_refuse(instance, "the stop time %.*g s is before the start time %.*g s", digits, stop_s, digits,
+                          start_s);
+    }
     fmu_clock_start(&instance->clock, start_s, stop_defined, stop_s);
     instance->model.time_s = start_s;
     return FMU_OK;

@@ -22,6 +22,9 @@
 #include "lifecycle.h"
 #include "model.h"
 
+/* Start values and tolerances would be off by 1e-7 or 0. */
+typedef char fmu_needs_compiling_without_fsingle_precision_constant[sizeof(1.0) == sizeof(double) ? 1 : -1];
+
 typedef enum fmu_status { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } fmu_status;
 
 typedef enum fmu_kind { FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION } fmu_kind;
@@ -73,6 +76,8 @@ struct fmu_instance {
     uint32_t warnings_given;         /* bit per warning that was logged in this run */
     uint32_t warnings_pending;       /* bit per warning of a step that may still be refused */
     fmu_between_steps between_steps; /* NULL: no intermediate updates */
+    volatile bool running;           /* a communication step of several internal ones      */
+    volatile bool cancelled;         /* another thread wants it to end: models look at it now and then */
     fmu_clock clock;
     fmu_model model;
     fmu_model initial;      /* right after instantiation, for reset                        */
@@ -130,6 +135,11 @@ fmu_status fmu_apply_parameters(fmu_instance *instance);
 fmu_status fmu_log(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...)
     FMU_LIKE_PRINTF(4, 5);
 fmu_status fmu_refuse(const fmu_instance *instance, const char *format, ...) FMU_LIKE_PRINTF(2, 3);
+/* For the %.*g of one line: 15 digits, or as many more as show which of three numbers differ. */
+int fmu_digits(double a, double b, double c);
+/* Of a communication step: it begins at another time than the model's; it ends beyond the stop time. */
+fmu_status fmu_refuse_start(const fmu_instance *instance, double at_s, double now_s);
+fmu_status fmu_refuse_end(const fmu_instance *instance, double from_s, double to_s);
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const categories[]);
 
 /* --------------------------------------------------------------------------------- variables -- */
@@ -162,13 +172,24 @@ typedef struct fmu_variable {
     uint32_t offset; /* in fmu_model                                          */
     uint16_t name;   /* in fmu_variable_names: a pointer would cost every FMU a relocation       */
     uint16_t stride; /* from one element to the next                          */
-    uint16_t size;   /* elements; 0: FMU_MODEL_ARRAY_SIZE of them  */
+    uint16_t size;   /* elements; 0: FMU_MODEL_ARRAY_SIZE of them, FMU_OTHER_SIZE: see below */
     uint8_t type, access;
     bool intermediate;  /* may be got or set between internal steps (FMI 3) */
     double least, most; /* what it may be set to                              */
     uint32_t group;     /* to compute before it is read, see model.h */
     uint32_t tangent;   /* in fmu_tangent; UINT32_MAX: not differentiated       */
 } fmu_variable;
+
+/* Models with arrays of two lengths have a macro FMU_MODEL_OTHER_ARRAY_SIZE, which gives that of the others. */
+#define FMU_OTHER_SIZE 65535U
+
+/* Its number of elements in this instance. */
+static inline uint32_t fmu_size_of(const fmu_model *model, const fmu_variable *variable) {
+#ifdef FMU_MODEL_OTHER_ARRAY_SIZE
+    if (variable->size == FMU_OTHER_SIZE) return FMU_MODEL_OTHER_ARRAY_SIZE(model);
+#endif
+    return variable->size != 0 ? variable->size : FMU_MODEL_ARRAY_SIZE(model);
+}
 
 extern const fmu_variable fmu_variables[];
 extern const char fmu_variable_names[];
@@ -248,6 +269,8 @@ typedef struct fmu_step_end {
 } fmu_step_end;
 
 fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end);
+/* Makes the communication step that runs in another thread end soon; DoStep takes it back and discards it. */
+fmu_status fmu_cancel_step(fmu_instance *instance);
 
 /* ------------------------------------------------------------- continuous states (Model Exchange) -- */
 

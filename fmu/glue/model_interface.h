@@ -43,7 +43,8 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s);
 /* Writes how many internal steps of own_s the communication step has; refuses, with both lengths, a fraction of one. */
 fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps);
 
-/* Takes `steps` internal steps. When the core refuses one, the state is that after the *taken steps before it. */
+/* Takes `steps` internal steps, fewer where fmu_instance.cancelled becomes true. When the core refuses one, the state
+ * is that after the *taken steps before it. */
 fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken);
 
 /* Logs the warnings of a communication step (fmu_instance.warnings_pending) if the step is accepted, else drops

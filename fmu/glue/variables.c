@@ -22,7 +22,7 @@ bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) 
     uint32_t size;
     if (row >= fmu_variable_count || (row != reference && element == 0)) return false;
     slot->variable = &fmu_variables[row];
-    size = slot->variable->size != 0 ? slot->variable->size : FMU_MODEL_ARRAY_SIZE(&instance->model);
+    size = fmu_size_of(&instance->model, slot->variable);
     if (element > size) return false;
     slot->first = element == 0 ? 0 : element - 1;
     slot->count = element == 0 ? size : 1;
@@ -71,8 +71,11 @@ static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slo
     char name[NAME_LENGTH];
     name_element(name, slot, element);
     if (!fmu_is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
-    if (most == DBL_MAX) return fmu_refuse(instance, "%s: %.15g is outside its range: at least %g", name, value, least);
-    return fmu_refuse(instance, "%s: %.15g is outside its range: %g to %g", name, value, least, most);
+    const int digits = fmu_digits(value, least, most);
+    if (most == DBL_MAX)
+        return fmu_refuse(instance, "%s: %.*g is outside its range: at least %.*g", name, digits, value, digits, least);
+    return fmu_refuse(instance, "%s: %.*g is outside its range: %.*g to %.*g", name, digits, value, digits, least,
+                      digits, most);
 }
 
 /* Whether the value lies in the range that the description declares; NaN does not. The model checks the rest. */

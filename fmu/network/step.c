@@ -31,11 +31,9 @@ static fmu_status check_times(const fmu_instance *instance, double at_s, double 
                           "a communication step of %.15g s from %.15g s cannot be taken: give %g s or less, and an "
                           "end of %g s or less",
                           step_s, at_s, LONGEST_S, LATEST_S);
-    if (!(off_s <= most_s))
-        return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
+    if (!(off_s <= most_s)) return fmu_refuse_start(instance, at_s, now_s);
     if (fmu_clock_passes_stop(&instance->clock, at_s + step_s, step_s))
-        return fmu_refuse(instance, "the step from %.15g s to %.15g s goes beyond the stop time %.15g s", at_s,
-                          at_s + step_s, instance->clock.stop_s);
+        return fmu_refuse_end(instance, at_s, at_s + step_s);
     return FMU_OK;
 }
 

@@ -6,14 +6,18 @@
 docs/integrators.md states the bound of each method. The exit status is 1 if a run exceeds its bound.
 """
 
+from __future__ import annotations
+
 import argparse
 import math
 import sys
 from collections import Counter
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from laconic.core import load
+from laconic.core import Core, load
 from laconic.errors import Refused
 
 CHECKPOINTS = 50
@@ -21,11 +25,11 @@ KEPT = {"double": 1e-9, "single": 1e-4}
 ROUNDED = {"double": 1e-15, "single": 3e-8}  # of a step, for methods that nothing corrects
 
 
-def between(rng, low, high):
+def between(rng: np.random.Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
-def made_up(rng):
+def made_up(rng: np.random.Generator) -> dict[str, Any]:
     """Keys of `[vehicle]`: omni, mecanum, any rollers, a cart, or a fixed wheel among omni wheels."""
     kind, wide = rng.integers(5), rng.random() < 0.5  # wide: from a crumb to a ship
     size, mass = between(rng, *((0.01, 10) if wide else (0.1, 1))), between(rng, *((1e-3, 1e5) if wide else (1, 100)))
@@ -48,7 +52,7 @@ def made_up(rng):
             "com_x_m": aside[0], "com_y_m": aside[1], "wheel": wheels}
 
 
-def bound(method, real, steps, turn, most_turn):
+def bound(method: str, real: str, steps: int, turn: float, most_turn: float) -> float:
     """Of the gain after so many steps; turn is h·|w||g·ζ| now, most_turn h·|w||g||ζ| at the start."""
     if method == "exponential-kahan":
         return turn**2 / 4 + steps * ROUNDED[real]
@@ -57,7 +61,7 @@ def bound(method, real, steps, turn, most_turn):
     return 2e-6 * steps if (method, real) == ("exponential-kahan-4", "single") else KEPT[real]
 
 
-def coast(core, number, method, steps, damped):
+def coast(core: Core, number: int, method: str, steps: int, damped: bool) -> tuple[str, float, float]:
     """How the run ended, its largest gain (with damping over the least energy so far), and that over the bound."""
     rng = np.random.default_rng(number)
     table, step_s = made_up(rng), between(rng, 1e-4, 1)
@@ -85,9 +89,10 @@ def coast(core, number, method, steps, damped):
     return "ok", worst, beside
 
 
-def campaign(core, method, numbers, steps, damped):
+def campaign(core: Core, method: str, numbers: Sequence[int], steps: int, damped: bool) -> bool:
     """Prints how the runs of a method ended; whether all are within the bound."""
-    ends, worst, beside, which = Counter(), 0.0, 0.0, None
+    ends: Counter[str] = Counter()
+    worst, beside, which = 0.0, 0.0, None
     for number in numbers:
         try:
             end, gain, ratio = coast(core, number, method, steps, damped)
@@ -100,7 +105,7 @@ def campaign(core, method, numbers, steps, damped):
     return beside <= 1
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--vehicles", type=int, default=100)
     parser.add_argument("--steps", type=int, default=10_000)

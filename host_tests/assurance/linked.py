@@ -79,17 +79,23 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.MULTILINE)
 
 
 @cache
+def included(path: Path, folders: tuple[str, ...]) -> tuple[Path, ...]:
+    """What a file of the project includes itself."""
+    places = [[Path(folder, name) for folder in (str(path.parent), *folders)]
+              for name in INCLUDE.findall(path.read_text(encoding="utf-8", errors="replace"))]
+    found = [next((place for place in each if place.is_file()), None) for each in places]
+    return tuple(place.resolve() for place in found if place)
+
+
+@cache
 def includes(path: Path, folders: tuple[str, ...]) -> frozenset[Path]:
     """A file with all of the project that it includes."""
     found, waiting = set[Path](), [path]
     while waiting:
         each = waiting.pop()
-        if each in found:
-            continue
-        found.add(each)
-        for name in INCLUDE.findall(each.read_text(encoding="utf-8", errors="replace")):
-            places = [(Path(folder) / name).resolve() for folder in (str(each.parent), *folders)]
-            waiting += [place for place in places if place.is_file()][:1]
+        if each not in found:
+            found.add(each)
+            waiting += included(each, folders)
     return frozenset(found)
 
 

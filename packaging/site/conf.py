@@ -17,6 +17,7 @@ html_theme = "furo"
 html_title = f"Laconic {release}"
 html_static_path = [str(Path(__file__).parent / "static")]
 html_css_files = ["site.css"]
+html_js_files = ["copy.js"]
 html_show_sphinx = False
 html_copy_source = False
 highlight_language = "none"  # indented blocks are command lines

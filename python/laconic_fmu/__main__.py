@@ -7,12 +7,13 @@ import sys
 from pathlib import Path
 
 from . import archive, fmi2, fmi3
-from .description import parse, read, token_in, token_of, with_token
+from .description import identifier_in, parse, token_in, token_of, with_identifier, with_token
 from .estimate import with_estimate, without_estimate
 from .field_list import missing_variable
 from .for_vehicle import for_vehicle
 from .licences import licence_parts, ziglang_in
 from .method_list import differing_item, methods_in, with_items
+from .names import with_own_names
 from .of_step import of_step
 from .package import pack
 from .tables import tables
@@ -24,7 +25,7 @@ def make_tables(arguments: argparse.Namespace) -> None:
     if token_in(text_3) != token_of(text_3):
         sys.exit(f"{arguments.description}: its token does not belong to its text any more: "
                  f"python -m laconic_fmu renew-token {arguments.description}")
-    description = parse(text_3)
+    description = parsed = parse(text_3)
     for header in arguments.fields:
         if fault := missing_variable(header, arguments.description, description):
             sys.exit(fault)
@@ -34,12 +35,13 @@ def make_tables(arguments: argparse.Namespace) -> None:
     generic = for_vehicle(description)
     if arguments.of_step:
         generic = of_step(generic)
-    if generic is not description:
+    generic = with_identifier(generic, arguments.identifier or identifier_in(text_3))
+    if generic is not parsed:
         text_3 = fmi3.describe(generic)
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     if arguments.versions == ["3"]:  # bus terminals, without arrays
-        text_3 = fmi3.describe_scalar(description)
+        text_3 = fmi3.describe_scalar(generic)
         (out / "variable_table.c").write_text(tables(description, text_3, text_3), encoding="utf-8")
         (out / "fmi3.xml").write_text(text_3, encoding="utf-8")
         return
@@ -51,10 +53,11 @@ def make_tables(arguments: argparse.Namespace) -> None:
 
 def make_fmu(arguments: argparse.Namespace) -> None:
     """Packs an FMU from `part=file` pairs."""
-    identifier = read(arguments.source).root.find("CoSimulation").get("modelIdentifier", "")  # type: ignore[union-attr]
+    identifier = arguments.identifier
     parts = {"modelDescription.xml": arguments.description.read_bytes()}
     in_archive = {name: Path(file) for name, _, file in (pair.partition("=") for pair in arguments.sources)}
-    parts |= {f"sources/{name}": file.read_bytes() for name, file in in_archive.items()}
+    own = with_own_names({name: file.read_bytes() for name, file in in_archive.items()}, identifier, arguments.version)
+    parts |= {f"sources/{name}": data for name, data in own.items()}
     sources = [name for name in in_archive if name.endswith(".c")]
     platforms = []
     for pair in arguments.binaries:
@@ -92,6 +95,7 @@ def main() -> None:
     command = commands.add_parser("tables")
     command.add_argument("description", type=Path)
     command.add_argument("--out", type=Path, required=True)
+    command.add_argument("--identifier", help="the modelIdentifier, if it is not that of the description")
     command.add_argument("--sources", nargs="*", default=[])
     command.add_argument("--versions", nargs="*", default=["2", "3"], help="the FMI versions of this FMU")
     command.add_argument("--fields", type=Path, nargs="*", default=[],
@@ -103,7 +107,7 @@ def main() -> None:
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")
     command.add_argument("--version", type=int, choices=(2, 3), required=True)
-    command.add_argument("--source", type=Path, required=True)
+    command.add_argument("--identifier", required=True, help="the modelIdentifier")
     command.add_argument("--description", type=Path, required=True)
     command.add_argument("--sources", nargs="*", default=[])
     command.add_argument("--binaries", nargs="*", default=[])

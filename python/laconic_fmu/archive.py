@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from . import fmi2, fmi3
-from .description import Description, parse, start_values, token_in, with_values
+from .description import Description, identifier_in, parse, start_values, token_in, with_identifier, with_values
 from .enumerations import without_enumerations
 from .for_vehicle import for_vehicle
 from .of_step import of_step
@@ -135,6 +135,7 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
              if variant.sources or not name.startswith("sources/")}
     given = parse(source.read_text(encoding="utf-8"))
     description = for_vehicle(with_values(given, content.values, content.name, content.text))
+    description = with_identifier(description, identifier_in(parts["modelDescription.xml"].decode("utf-8")))
     if variant.derivatives:
         description = of_step(description)
     experiment = description.root.find("DefaultExperiment")

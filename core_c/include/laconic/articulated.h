@@ -71,12 +71,12 @@ typedef struct laconic_body {
 typedef struct laconic_articulated_vehicle {
     laconic_vehicle base;
     int32_t wheel_body[LACONIC_MAX_WHEELS]; /* number of the wheel's body; 0: the carriage */
-    int32_t body_count;                     /* H: bodies besides the carriage              */
+    int32_t body_count;                     /* H: bodies without the carriage               */
     laconic_body body[LACONIC_MAX_BODIES];  /* body b is body[b − 1]                       */
 } laconic_articulated_vehicle;
 
 /* Rows as in vehicle.h: X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED). laconic_field_name() and
- * laconic_field_path() know them; no FMU and no node has them yet. */
+ * laconic_field_path() know them; the node does not have them yet. */
 /* clang-format off */
 #define LACONIC_BODY_FIELDS(X, of) \
     X(of,  97, BODY_PARENT,      parent,           body_parent,           INTEGER, UNCHECKED,    NEVER) \
@@ -100,14 +100,15 @@ typedef struct laconic_articulated_vehicle {
 #define LACONIC_HINGE_INPUT_FIELDS(X, of) \
     X(of, 111, HINGE_VOLTAGE,      hinge_voltage_V,               hinge_voltage_V,      REAL, FINITE, NEVER) \
     X(of, 112, HINGE_TORQUE,       hinge_torque_Nm,               hinge_torque_Nm,      REAL, FINITE, NEVER) \
-    X(of, 113, HINGE_RATE,         hinge_rate_rad_per_s,          hinge_rate_rad_per_s, REAL, FINITE, NEVER) \
-    X(of, 114, HINGE_ACCELERATION, hinge_acceleration_rad_per_s2, hinge_acceleration_rad_per_s2, REAL, FINITE, NEVER) \
-    X(of, 115, TWIST,              twist,                         twist,                REAL, FINITE, NEVER) \
-    X(of, 116, TWIST_RATE,         twist_rate,                    twist_rate,           REAL, FINITE, NEVER)
+    X(of, 113, HINGE_RATE,         hinge_rate_rad_per_s, steering_rate_rad_per_s, REAL, FINITE, NEVER) \
+    X(of, 114, HINGE_ACCELERATION, hinge_acceleration_rad_per_s2, steering_acceleration_rad_per_s2, REAL, FINITE, \
+      NEVER) \
+    X(of, 115, TWIST,              twist,                         steering_twist,       REAL, FINITE, NEVER) \
+    X(of, 116, TWIST_RATE,         twist_rate,                    steering_twist_rate,  REAL, FINITE, NEVER)
 #define LACONIC_HINGE_START_FIELDS(X, of) \
     X(of, 117, START_VELOCITY,     velocity_m_per_s,     start_velocity_m_per_s,     REAL, FINITE, NEVER) \
     X(of, 118, START_YAW_RATE,     yaw_rate_rad_per_s,   start_yaw_rate_rad_per_s,   REAL, FINITE, NEVER) \
-    X(of, 119, START_HINGE_ANGLE,  hinge_angle_rad,      start_hinge_angle_rad,      REAL, FINITE, NEVER) \
+    X(of, 119, START_HINGE_ANGLE,  hinge_angle_rad,      start_hinge_rad,            REAL, FINITE, NEVER) \
     X(of, 120, START_HINGE_RATE,   hinge_rate_rad_per_s, start_hinge_rate_rad_per_s, REAL, FINITE, NEVER)
 
 #define LACONIC_ARTICULATED_FIELDS(X) \
@@ -117,8 +118,8 @@ typedef struct laconic_articulated_vehicle {
 
 #define LACONIC_ARTICULATED_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_FIELD_OF_##IDENTIFIER = number,
 
-/* Numbers of a refusal's field besides those of laconic_field; converted to it they stay what they are. The item is the
- * number of the body; of WHEEL_BODY that of the wheel, of TWIST that of the component. */
+/* Numbers of a refusal's field in addition to those of laconic_field; converted to it they keep their values. The
+ * item is the number of the body; of WHEEL_BODY that of the wheel, of TWIST that of the component. */
 typedef enum laconic_articulated_field {
     LACONIC_ARTICULATED_FIELDS(LACONIC_ARTICULATED_FIELD_NUMBER) LACONIC_ARTICULATED_FIELD_COUNT = 121
 } laconic_articulated_field;
@@ -222,7 +223,7 @@ laconic_status laconic_articulated_prepare(laconic_articulated_model *model, con
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* What acts and what is commanded at one moment. All zero: only damping acts, and prescribed hinges are held. */
+/* Everything that acts or is commanded at one moment. All zero: only damping acts, and prescribed hinges are held. */
 typedef struct laconic_articulated_input {
     laconic_input base; /* voltages and torques of all wheels; forces on body 0, points from S_0                 */
     laconic_real hinge_voltage_V[LACONIC_MAX_BODIES];               /* motor hinges; hinge b is item b − 1        */
@@ -290,7 +291,7 @@ typedef enum laconic_articulated_method {
 
 #define LACONIC_ARTICULATED_METHOD_COUNT 4
 
-/* "auto", "rk4", "circle", "moebius-4"; "" for a number that is no method. */
+/* "auto", "rk4", "circle", "moebius-4"; "" for an unknown number. */
 const char *laconic_articulated_method_name(int32_t method);
 
 /* The method of that name; −1: there is none. */
@@ -339,7 +340,7 @@ laconic_status laconic_articulated_step(const laconic_articulated_model *model,
 
 /* -------------------------------------------------------------------------------- outputs -- */
 
-/* What follows from the state alone. Arrays have one number for each of the model's bodies or wheels. */
+/* Outputs that follow from the state alone. Arrays have one number for each of the model's bodies or wheels. */
 typedef struct laconic_articulated_motion {
     laconic_real velocity_m_per_s[2], yaw_rate_rad_per_s; /* of S_0, body axes                          */
     laconic_real x_m, y_m, heading_rad;                   /* of S_0; heading unwrapped                  */

@@ -4,10 +4,10 @@
  *                          |
  *                          +--run-->  rows of numbers, one number for each lane; status of each lane
  *
- * Row x_m holds x of lane 0, of lane 1 …, and so on. The methods' own text steps as many lanes at once as a register of
- * the processor holds: 2, 4 or 8 doubles, twice as many floats; the width is chosen when the program runs. A lane that
- * leaves the usual way of a step takes that step alone, as slowly as laconic_step(): one that is refused, one that yaws
- * by more than a quarter of a radian.
+ * Row x_m holds x of lane 0, of lane 1 …, and so on. The methods' own text steps a register of lanes at once: 2, 4 or 8
+ * doubles, twice that number of floats. The width is chosen when the program runs. A lane that leaves the usual path of
+ * a step takes that step alone, as slowly as laconic_step(). Examples are a refused step and a yaw of more than a
+ * quarter of a radian.
  *
  * Memory   the caller owns it: a laconic_batch, the kinds, and one piece of laconic_batch_size() bytes. No heap.
  * Threads  laconic_batch_run(), _run_sampled() and _observe() of different blocks may run at the same time; all else
@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-/* What many lanes have in common: a vehicle with its method and step. */
+/* The common part of many lanes: a vehicle with its method and step. */
 typedef struct laconic_batch_kind {
     laconic_model model;
     laconic_integrator integrator;
@@ -74,10 +74,10 @@ size_t laconic_batch_size(const laconic_batch_shape *shape);
 bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch_shape *shape,
                          const laconic_batch_kind *kinds, const int32_t *kind_of);
 
-/* The constants of a lane anew from its kind, which the program has changed; the lane, and every other one of that
- * kind, is then to be loaded with a state of the new model. Returns false, and changes nothing, where the new kind is
- * stepped in another way than the old: by another method (`chosen` of its integrator), of other damping beside the step
- * (`stiff`), with another number of wheels, with a slope or without. Precondition: 0 <= lane < lane_count. O(1). */
+/* Makes the constants of a lane anew from its kind, which the program has changed. Load the lane, and every other
+ * one of that kind, with a state of the new model afterwards. Returns false, and changes nothing, where the new kind
+ * steps in another way than the old one. Examples are another method (`chosen` of its integrator), fast instead of slow
+ * damping (`stiff`), another number of wheels, or a slope. Precondition: 0 <= lane < lane_count. O(1). */
 bool laconic_batch_renew(laconic_batch *batch, int32_t lane);
 
 /* A lane's state and input, to and from the structs of laconic.h, bit by bit; what is for wheels that the lane's
@@ -110,16 +110,16 @@ typedef enum laconic_batch_row {
 } laconic_batch_row;
 laconic_real *laconic_batch_row_of(const laconic_batch *batch, laconic_batch_row row, int32_t wheel);
 
-/* Takes `steps` steps of all lanes of some blocks with the inputs held, as laconic_run() does of one: a lane stops at
- * the first step that is refused, as it was before it, and the others go on. `status` and `missed` tell of each lane.
- * Returns how many lanes were refused. Precondition: 0 <= first_block, first_block + blocks <= block_count. */
+/* Takes `steps` steps of all lanes of some blocks with the inputs held, as laconic_run() does of one. A lane stops
+ * before the first step that is refused, and the others continue. `status` and `missed` report on each lane. Returns
+ * how many lanes were refused. Precondition: 0 <= first_block, first_block + blocks <= block_count. */
 int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t steps);
 
-/* The same with new voltages after every `steps_each` steps, `samples` times. voltage_V has for each sample a row for
- * each of the shape's wheels, of lane_count numbers [V]; they are written into the rows of voltages before their steps,
- * so that these have those of a lane's last step, or of the one that was refused: it takes none after that. As bits it
- * is laconic_batch_run() for each sample; it costs less where kinds are many, since a few blocks take all their steps
- * before the next. */
+/* The same with new voltages after every `steps_each` steps, `samples` times. voltage_V has for each sample a row
+ * for each of the shape's wheels, of lane_count numbers [V]; they are written into the rows of voltages before their
+ * steps. Afterwards the rows hold the voltages of a lane's last step, or of the one that was refused, after which it
+ * takes none. As bits it is laconic_batch_run() for each sample; it costs less where kinds are many, since a few
+ * blocks take all their steps before the next. */
 int32_t laconic_batch_run_sampled(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t samples,
                                   uint64_t steps_each, const laconic_real *voltage_V);
 
@@ -127,7 +127,7 @@ int32_t laconic_batch_run_sampled(laconic_batch *batch, int32_t first_block, int
 void laconic_batch_observe(laconic_batch *batch, int32_t first_block, int32_t blocks);
 
 /* For populations whose vehicles differ in their numbers: arrays with one item for each vehicle. Each of the first
- * three returns how many vehicles were refused, whose `status` is not OK; the single function tells why. */
+ * three returns how many vehicles were refused, whose `status` is not OK; the single function reports the reason. */
 
 /* Kinds as laconic_batch_kind_of() makes them; of a vehicle that is refused the kind is not written. motors: NULL, or
  * those that laconic_motor_fit() fits to a copy of each vehicle before. About 1 us for each. */
@@ -143,8 +143,8 @@ int32_t laconic_batch_start(laconic_batch *batch, int32_t first_lane, int32_t la
 int32_t laconic_batch_contacts_of(laconic_contact *contacts, int32_t *status, const laconic_vehicle *vehicles,
                                   const laconic_motor *motors, int32_t count);
 
-/* Outputs of lanes from first_lane on with their present input, as laconic_outputs_of() gives them. contacts: NULL, or
- * one for each of these lanes; then the reactions, too. */
+/* Outputs of lanes from first_lane on with their present input, as laconic_outputs_of() gives them. contacts: NULL,
+ * or one for each of these lanes; then also the reactions. */
 void laconic_batch_outputs(const laconic_batch *batch, int32_t first_lane, int32_t lanes,
                            const laconic_contact *contacts, laconic_outputs *outputs);
 

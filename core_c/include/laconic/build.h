@@ -1,4 +1,4 @@
-/* What a program and the library must be compiled with alike, since it changes structs. Part of laconic.h.
+/* Definitions on which a program and the library must agree, because they change structs. Part of laconic.h.
  *
  * Each of these definitions is in the name of an empty function of the library. The functions with which a program
  * begins are called behind them (the macros at the end), so a program with another definition does not link, and the

@@ -59,19 +59,19 @@ typedef struct laconic_model_change {
 
 /* How a model changes with its vehicle: `by` has a change in each member that is a number of type laconic_real, and
  * 0 in members that do not change. Exact, also where damping rates coincide. An own value of a wheel (own_radius_m
- * …) that is 0 stands for the vehicle's and follows that; its own change is not read. Does not act, as on every
- * step: com_z_m, supports, friction coefficients, drive. Where wheels share a constraint (two on one axle line), a
- * change by which they would no longer share it has no derivative: the constraint then follows the least-squares fit
- * of both. `model`: that of `vehicle`. Refuses METHOD_WITHOUT_FRICTION. O(N). */
+ * …) that is 0 means the vehicle's and follows it; its own change is not read. Does not act, as on every step:
+ * com_z_m, supports, friction coefficients, drive. If wheels share a constraint (two on one axle line), a change
+ * that separates them has no derivative. The constraint then follows the least-squares fit of both. `model`: that of
+ * `vehicle`. Refuses METHOD_WITHOUT_FRICTION. O(N). */
 laconic_status laconic_model_tangent(laconic_model_change *change, const laconic_model *model,
                                      const laconic_vehicle *vehicle, const laconic_vehicle *by);
 
 /* ---------------------------------------------------------------------------------- methods -- */
 
 /* Which methods' steps are differentiated. A function that takes one (…_by) links the methods that it names and no
- * other, as laconic_integrator_prepare() does with its method, and refuses METHOD_UNKNOWN for an integrator of another.
- * That of auto has all that auto may choose; by laconic_integrator.stiff a robot needs that of auto_fast or auto_slow
- * alone. The members are the core's own. */
+ * other, as laconic_integrator_prepare() does with its method, and refuses METHOD_UNKNOWN for an integrator of
+ * another. The derivation of auto has all that auto may choose; by laconic_integrator.stiff a robot needs that of
+ * auto_fast or auto_slow alone. The members are the core's own. */
 #define LACONIC_DERIVED_METHODS 12
 typedef struct laconic_derived_method laconic_derived_method;
 typedef struct laconic_derivation {

@@ -1,5 +1,5 @@
-/* Error estimate of a run: how far the numbers of a plant are from the true motion of its equations.
- * docs/error-estimate.md derives it and has measured figures.
+/* Error estimate of a run: how far the numbers of a plant are from the exact solution of its equations.
+ * docs/accuracy.md derives it and has measured figures.
  *
  *     laconic_estimate_start(&estimate, &plant, 16, laconic_finer_method(&plant), &why);
  *     laconic_estimate_run(&estimate, &plant, &input, 1000, &why);    the bits of laconic_plant_run
@@ -34,7 +34,7 @@ typedef struct laconic_error {
     laconic_real wheel_angle_rad; /* of the wheel that is farthest off          */
 } laconic_error;
 
-/* What is known of a plant's error. */
+/* The known error of a plant. */
 typedef struct laconic_errors {
     laconic_error now;      /* at this moment, rounding included                          */
     laconic_error largest;  /* at any window's end since the start, and now               */
@@ -71,7 +71,7 @@ typedef struct laconic_estimate {
     laconic_real first_path_m[2]; /* way of the window's first step                                  */
     laconic_forcing forcing;      /* at the window's start: how b follows the heading                 */
 #if LACONIC_WITH_FRICTION
-    laconic_slip twin_slip; /* with friction: of the twin */
+    laconic_slip twin_slip; /* with friction: of the copy */
 #endif
 } laconic_estimate;
 
@@ -81,14 +81,14 @@ typedef struct laconic_estimate {
 laconic_status laconic_estimate_start(laconic_estimate *estimate, const laconic_plant *plant, int32_t most_steps,
                                       const laconic_method *finer, laconic_refusal *why);
 
-/* After laconic_plant_set_step or _change: goes on with the error that was, from the plant as it was `before` to
- * `plant`, whose state is the same motion. Where friction begins or ends with the change it starts anew. Refuses, and
+/* After laconic_plant_set_step or _change: continues with the previous error, from the plant as it was `before` to
+ * `plant`, whose state is the same motion. If friction begins or ends with the change, it starts anew. Refuses, and
  * leaves all as it was, as laconic_estimate_start() does. */
 laconic_status laconic_estimate_carry(laconic_estimate *estimate, const laconic_plant *before,
                                       const laconic_plant *plant, const laconic_method *finer, laconic_refusal *why);
 
-/* The method for the half steps of a plant: its own; where damping is fast beside the step that of eighth order, since
- * methods whose order falls there err in two half steps nearly as in one. Links that method. */
+/* Returns the method for the half steps of a plant: its own, or with fast damping that of eighth order. Methods
+ * whose order falls there err in two half steps nearly as in one. Links that method. */
 const laconic_method *laconic_finer_method(const laconic_plant *plant);
 
 /* laconic_plant_run() and laconic_plant_run_sampled() with an estimate that watches: the same bits and refusals. */
@@ -100,12 +100,12 @@ laconic_status laconic_estimate_run_sampled(laconic_estimate *estimate, laconic_
 /* Rows of errors along a run: those of `now` at the start of each step whose number `every` divides. */
 typedef struct laconic_error_rows {
     uint64_t every;     /* 0: none                                             */
-    laconic_error *row; /* room for row_room                                   */
+    laconic_error *row; /* space for row_room                                   */
     uint64_t row_count, row_room;
 } laconic_error_rows;
 
-/* laconic_plant_follow() with an estimate that watches; `recorder` and `rows` may be NULL. Ends where rows have no
- * room, too. */
+/* laconic_plant_follow() with an estimate that watches; `recorder` and `rows` may be NULL. Also ends when the rows
+ * are full. */
 laconic_status laconic_estimate_follow(laconic_estimate *estimate, laconic_plant *plant,
                                        const laconic_schedule *schedule, uint64_t until_step,
                                        laconic_recorder *recorder, laconic_error_rows *rows, laconic_refusal *why);

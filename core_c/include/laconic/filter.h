@@ -1,6 +1,6 @@
 /* Extended Kalman filter: where a robot is and how it moves, from its voltages, wheel encoders, a gyro and fixes of its
- * pose. It predicts by laconic_step() and the exact derivatives of that step, so it costs what a step's Jacobian and
- * some small matrices do, in either scalar type. docs/control.md shows it at work.
+ * pose. It predicts by laconic_step() and the exact derivatives of that step. It costs a step's Jacobian and some small
+ * matrices, in either scalar type. docs/control.md shows it at work.
  *
  *     settings --start--> filter --predict--> (a step) --encoders, yaw_rate, fix--> state, covariance
  *
@@ -36,7 +36,7 @@ extern "C" {
 
 /* All zero: a filter that believes its start and the model. Every number is ≥ 0. */
 typedef struct laconic_filter_settings {
-    /* what acts besides the input, as one-sided densities */
+    /* further causes in addition to the input, as one-sided densities */
     laconic_real voltage_noise_V_per_sqrt_Hz;    /* of each motor's voltage                                 */
     laconic_real force_noise_N_per_sqrt_Hz;      /* at S, along either body axis                            */
     laconic_real moment_noise_Nm_per_sqrt_Hz;    /* about S                                                 */
@@ -48,15 +48,15 @@ typedef struct laconic_filter_settings {
     laconic_real position_std_m; /* of x and of y */
     laconic_real heading_std_rad;
     laconic_real bias_std_rad_per_s; /* this and its drift 0: no bias is estimated */
-    /* how well instruments read: standard deviations of one reading. White noise on top of rounding to counts is √(1/6)
-     * of a count, where the place between two counts at the start is not known, too. */
+    /* how well instruments read: standard deviations of one reading. White noise on top of rounding to counts is
+     * √(1/6) of a count, where the place between two counts at the start is also not known. */
     laconic_real encoder_std_rad[LACONIC_MAX_WHEELS]; /* of the wheel's angle; 0: that wheel has no encoder */
-    laconic_real yaw_rate_std_rad_per_s;              /* 0: there is no gyro                                */
+    laconic_real yaw_rate_std_rad_per_s;              /* 0: without a gyro                                   */
 } laconic_filter_settings;
 
 /* ----------------------------------------------------------------------------------- filter -- */
 
-/* Errors that a filter may keep: ∫ζ dt (3), x, y, θ, bias, ζ (3); and columns of noise besides them. */
+/* Errors that a filter may keep: ∫ζ dt (3), x, y, θ, bias, ζ (3); and columns of noise in addition to them. */
 #define LACONIC_FILTER_ERRORS 10
 #define LACONIC_FILTER_NOISES 7
 
@@ -75,7 +75,7 @@ typedef struct laconic_filter {
     laconic_factors covariance;
     laconic_real forcing[3][3], forcing_variance_s[3]; /* noise of b: columns, and variance times step_s      */
     int32_t dof, travels, biases, errors;              /* rows: travels, x, y, θ, biases, then dof of ζ       */
-    struct {                                           /* room for a prediction                               */
+    struct {                                           /* space for a prediction                               */
         laconic_real row[LACONIC_FILTER_ERRORS][LACONIC_FILTER_ERRORS + LACONIC_FILTER_NOISES];
         laconic_real weight[LACONIC_FILTER_ERRORS + LACONIC_FILTER_NOISES];
         laconic_factors next;
@@ -88,8 +88,8 @@ laconic_status laconic_filter_start(laconic_filter *filter, const laconic_model 
                                     const laconic_filter_settings *settings, const laconic_state *state);
 
 /* One step of the integrator with the input held. Refuses as laconic_step() does, and OVERFLOW where the covariance
- * leaves the range. Model and integrator may change from call to call, but for the wheels and the degrees of freedom;
- * noise of voltages and forces stays that of the model at the start. */
+ * leaves the range. Model and integrator may change from call to call, except for the wheels and the degrees of
+ * freedom. Noise of voltages and forces stays that of the model at the start. */
 laconic_status laconic_filter_predict(laconic_filter *filter, const laconic_model *model,
                                       const laconic_integrator *integrator, const laconic_input *held);
 
@@ -115,12 +115,12 @@ typedef struct laconic_innovation {
 laconic_status laconic_filter_encoders(laconic_filter *filter, const laconic_model *model,
                                        const laconic_real turned_rad[], laconic_innovation *found);
 
-/* What the gyro shows, about the upward axis. */
+/* Takes the gyro's reading, about the upward axis. */
 laconic_status laconic_filter_yaw_rate(laconic_filter *filter, const laconic_model *model,
                                        laconic_real yaw_rate_rad_per_s, laconic_innovation *found);
 
-/* Where a point of the body was seen, and in which direction the body points: of a camera, a satellite receiver, a scan
- * matcher. A standard deviation of 0: that was not seen. */
+/* Takes the observed place of a point of the body and the body's heading, from a camera, a satellite receiver or a
+ * scan matcher. A standard deviation of 0: that was not seen. */
 typedef struct laconic_pose_fix {
     laconic_real x_m, y_m, heading_rad; /* the heading in any turn                                          */
     laconic_real std_m, heading_std_rad;
@@ -137,7 +137,8 @@ void laconic_filter_turned(laconic_real turned_rad[], const laconic_sensor_setti
 
 /* --------------------------------------------------------------------------------- outputs -- */
 
-/* Of (ν1, ν2, ν3, x, y, θ, bias), 7 × 7 numbers row by row, symmetric; rows of a bias that is not estimated are 0. */
+/* Writes the covariance of (ν1, ν2, ν3, x, y, θ, bias), 7 × 7 numbers row by row, symmetric; rows of a bias that is
+ * not estimated are 0. */
 #define LACONIC_FILTER_OUTPUTS 7
 void laconic_filter_covariance(laconic_real matrix[], const laconic_filter *filter, const laconic_model *model);
 

@@ -76,7 +76,7 @@ typedef struct laconic_friction {
     laconic_real normal_load_of_wrench[LACONIC_SLIP_POINTS][3]; /* least-norm statics, while no point lifts    */
 } laconic_friction;
 
-/* What a drive has reached. */
+/* The limit that a drive has reached. */
 typedef enum laconic_drive_limit {
     LACONIC_LIMIT_NONE = 0,
     LACONIC_LIMIT_VOLTAGE = 1,
@@ -101,7 +101,7 @@ typedef struct laconic_slip {
     laconic_sum numerical_loss_J; /* dissipation of the first-order step            */
 } laconic_slip;
 
-/* What a vehicle with friction shows beside the usual outputs; every member is a number of the scalar type. */
+/* Outputs of a vehicle with friction in addition to the usual ones; every member is a number of the scalar type. */
 typedef struct laconic_friction_outputs {
     laconic_real slip_along_m_per_s[LACONIC_SLIP_WHEELS];  /* of the contact point, along the roller's axis u  */
     laconic_real slip_across_m_per_s[LACONIC_SLIP_WHEELS]; /* along w = e_z × u; of free rollers their rolling */

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* A compensated sum, which keeps in `rest` what is too small for `value` to take up: it stands for value + rest. */
+/* A compensated sum, which keeps in `rest` what is too small for `value` to take up: its value is value + rest. */
 typedef struct laconic_sum {
     laconic_real value, rest;
 } laconic_sum;
@@ -26,10 +26,10 @@ typedef struct laconic_decay {
     laconic_real mean[3];       /* φ2/φ1, ½ … 1: (mean of ζ − ζ at the start)/increment; also the constant
                                    b that leads to the same end as a change of b from 0 to 1      */
     laconic_real bend[3];       /* (2 φ3 − φ2)/φ1: the same constant b for a curve of b           */
-    laconic_real mean_ramp[3];  /* h (φ3 − mean φ2): what a change of b adds to the mean beside that */
+    laconic_real mean_ramp[3];  /* h (φ3 − mean φ2): the further share of a change of b in the mean */
     laconic_real mean_bend[3];  /* h (2 φ4 − φ3 − mean (2 φ3 − φ2)): the same for a curve of b    */
     laconic_real slope[3];      /* 12 (φ2/2 − φ3)/φ1, 1 … 0: 12/h² (first moment of ζ)/increment  */
-    laconic_real slope_ramp[3]; /* what a change of b adds to the slope beside that               */
+    laconic_real slope_ramp[3]; /* the further share of a change of b in the slope               */
     laconic_real slope_bend[3]; /* the same for a curve of b                                      */
 } laconic_decay;
 
@@ -41,7 +41,7 @@ typedef struct laconic_forcing_samples {
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 /* The values of laconic_integrator.chosen for laconic_auto; they cannot be prepared by themselves. */
-extern const struct laconic_method laconic_auto_slow; /* where damping is slow beside the step: auto.c */
+extern const struct laconic_method laconic_auto_slow; /* for slow damping: auto.c */
 extern const struct laconic_method laconic_auto_fast; /* where it is fast */
 #endif
 

@@ -34,7 +34,7 @@
  *          Ξ             wheel matrix (4.3, 4.4): χ' = Ξν; the row of a wheel has the factor R/R_i
  *          A             inertia matrix E + Σ J_i/(M R²) Ξ_iᵀΞ_i (4.6), E + λ²ΞᵀΞ for equal wheels: the kinetic energy
  *                        is ½ M R² νᵀAν
- *          K             (Aν)₃, which free motion without constraints conserves beside the energy
+ *          K             (Aν)₃, which free motion without constraints conserves, like the energy
  *          ζ, G, g       the velocity in principal coordinates, ν = Gζ; g is the third row of G, so ν3 = g·ζ
  *          w, r, b       of ζ' = (g·ζ)(ζ × w) − diag(r)ζ + b: axis of the gyroscopic term, damping rates, forcing
  *          κ             multipliers of the constraints [rad/s²]: M R κ is a force, M R² κ the torque of a brake
@@ -85,22 +85,22 @@ typedef struct laconic_refusal {
     laconic_real limit; /* the nearest acceptable one, where there is one; else 0         */
 } laconic_refusal;
 
-/* One line of text for a refusal, naming the field as a scene file has it, with its table and the number of the wheel,
- * and the remedy: "vehicle.wheel[2].x_m: infinity is not a finite number; give a number". Angles in rad. Writes at most
- * `size` characters with the closing 0 and returns the length the whole text has (as snprintf does). */
+/* Writes one line of text for a refusal. It names the field as in a scene file, with its table and the number of the
+ * wheel, and the remedy: "vehicle.wheel[2].x_m: infinity is not a finite number; give a number". Angles in rad.
+ * Writes at most `size` characters with the closing 0 and returns the length the whole text has (as snprintf does). */
 size_t laconic_message(const laconic_refusal *why, char *text, size_t size);
 
 /* The same without the field, for callers that name the field themselves. */
 size_t laconic_explanation(const laconic_refusal *why, char *text, size_t size);
 
-/* "mass_kg", "wheel_x_m" … ; "" for a number that is no field. */
+/* "mass_kg", "wheel_x_m" … ; "" for an unknown number. */
 const char *laconic_field_name(laconic_field field);
 
-/* The key of a scene: "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; of an input the name of its signal;
- * "" for a number that is no field. */
+/* The key of a scene: "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; of an input the name of its
+ * signal; "" for an unknown number. */
 const char *laconic_field_path(laconic_field field);
 
-/* What else vehicle.h states of a field. `items`: how many items it has, 0 where it is a single number. */
+/* Further facts of vehicle.h about a field. `items`: how many items it has, 0 where it is a single number. */
 typedef struct laconic_field_traits {
     laconic_field_kind kind;
     laconic_field_rule rule;
@@ -108,10 +108,10 @@ typedef struct laconic_field_traits {
     int32_t items;
 } laconic_field_traits;
 
-/* For hosts and tools that make their own lists of fields; NULL for a number that is no field. */
+/* For hosts and tools that make their own lists of fields; NULL for an unknown number. */
 const laconic_field_traits *laconic_field_traits_of(laconic_field field);
 
-/* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is no status. */
+/* "not finite", "wheel not set" … : a few words; "unknown status" for an unknown number. */
 const char *laconic_status_name(laconic_status status);
 
 /* ----------------------------------------------------------------------------- arithmetic -- */
@@ -134,10 +134,10 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to
- * the J, own ones too, of all wheels that are driven: own_inertia_kgm2 is before the call without the rotor, after it
- * with. So call it once, with the wheels set. Refuses NEGATIVE (wheel_inertia, own_inertia) where J is below 0,
- * ZERO (gear_ratio), OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is
- * below 0. */
+ * the J of all driven wheels, including own ones. own_inertia_kgm2 excludes the rotor before the call and includes
+ * it afterwards. So call it once, with the wheels set. Refuses NEGATIVE (wheel_inertia, own_inertia) where J is
+ * below 0, ZERO (gear_ratio), OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where
+ * damping is below 0. */
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- model -- */
@@ -177,22 +177,22 @@ typedef struct laconic_model {
 #endif
 } laconic_model;
 
-/* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal axes
- * of A (4.6), damping rates. About 2,000 flops plus 60 for each wheel; steps then need no sine of a given angle and no
- * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES (item: the wheel that takes
- * the last motion; value: what part of its way it would slide in that motion, 0 to 1), STRAIGHT_ONLY (fixed wheels on
- * parallel axle lines, as of skid steering, hold the heading where nothing slips; item: the wheel whose line lies
- * farthest off the first one's; value: by how much, in m), ILL_CONDITIONED (value:
- * the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where a constant or the
- * inverse of a scale is beyond 10¹⁵⁴ (single: 10¹⁹), so that the product of two would leave the range: every number of
- * a prepared model is finite. Where the vehicle has friction (laconic_vehicle_has_friction) the model is that of the
- * body alone: without constraints, G = E, rows of wheels 0. */
+/* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal
+ * axes of A (4.6), damping rates. About 2,000 flops plus 60 for each wheel; steps then need no sine of a given angle
+ * and no division by a given number. Refuses as laconic_vehicle_check does. Refuses NOTHING_MOVES (item: the wheel
+ * that takes the last motion; value: the share of its way that it would slide in that motion, 0 to 1). Refuses
+ * STRAIGHT_ONLY if fixed wheels on parallel axle lines, as of skid steering, hold the heading (item: the wheel whose
+ * line is farthest off the first one's; value: the distance in m). Refuses ILL_CONDITIONED (value: the condition
+ * number of A, refused from 2·10²⁷ on, in single from 7·10⁹). Refuses OVERFLOW if a constant or the inverse of a
+ * scale is beyond 10¹⁵⁴ (single: 10¹⁹), where the product of two would leave the range. Every number of a prepared
+ * model is finite. If the vehicle has friction (laconic_vehicle_has_friction), the model is that of the body alone:
+ * without constraints, G = E, rows of wheels 0. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* Condition number of A on the motions that the constraints leave: largest over smallest inertia. Measured as energy
- * is, √(ν'ᵀAν'), an acceleration has a relative rounding error up to about ε √cond: half of cond's digits are lost. ν'
- * itself keeps nearly all digits, but where a wrench acts along the largest inertia alone, all of cond's digits may be
- * lost. */
+ * is, √(ν'ᵀAν'), an acceleration has a relative rounding error up to about ε √cond: half of cond's digits are lost.
+ * The components of ν' keep nearly all digits. Only if a wrench acts along the largest inertia alone, all of cond's
+ * digits may be lost. */
 laconic_real laconic_condition_number(const laconic_model *model);
 
 /* The matrices of the paper, to read; steps do not need them. */
@@ -213,8 +213,8 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* OK iff every number is finite, those of the first wheel_count wheels and those without a wheel. Here, too, the code
- * is proved to be defined for every number, checked or not. */
+/* OK iff every number is finite, those of the first wheel_count wheels and those without a wheel. The code is also
+ * proved to be defined for every number, checked or not. */
 laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why);
 
 /* The forcing b that an input makes, as a function of the heading: constant + cos θ · cosine + sin θ · sine. */
@@ -245,9 +245,9 @@ typedef struct laconic_state {
     laconic_real wheel_angle_set_rad[LACONIC_MAX_WHEELS]; /* the angles then                                */
 } laconic_state;
 
-/* Sets the state; wheel angles become 0. Refuses START_AGAINST_CONSTRAINTS iff ν differs from the nearest motion
- * that the constraints allow by more than LACONIC_RANK_TOLERANCE of its size (item: the component that differs most,
- * limit: its value in that motion). */
+/* Sets the state; wheel angles become 0. Refuses START_AGAINST_CONSTRAINTS iff ν differs from the nearest allowed
+ * motion by more than LACONIC_RANK_TOLERANCE of its size. (Item: the component that differs most, limit: its value
+ * in that motion.) */
 laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why);
 
@@ -275,14 +275,14 @@ typedef struct laconic_integrator {
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
     laconic_real gyro_limit;             /* largest |g·ζ| that an explicit method takes; not read by others */
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-    int32_t stretches;                       /* of a step while something dies out; 0: it is one panel */
+    int32_t stretches;                       /* of a step while something decays; 0: it is one panel */
     bool has_rest;                           /* after them, which is one more panel */
     bool halved;                             /* panels half as long, for the half steps of an error estimate */
     laconic_real first_share, rest_share;    /* of the step: the first panel, and the rest */
     laconic_real collocation[3][30];         /* weights of each axis; with stretches the φ of the first panel's */
     laconic_real collocation_of_rest[3][30]; /* and those of the rest */
 #endif
-    bool stiff; /* damping is fast beside the step: h·r_max >= 0.3       */
+    bool stiff; /* damping is fast for the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
 typedef struct laconic_method {
@@ -304,15 +304,15 @@ LACONIC_METHODS(LACONIC_METHOD_DECLARATION)
 const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
-/* Prepares a method for a step. Refuses METHOD_UNKNOWN (NULL), NOT_FINITE, NOT_POSITIVE, OVERFLOW (the step; beyond 10⁹
- * s, and where the inverse of a quarter of it leaves the range), and for explicit methods STEP_BEYOND_DAMPING_LIMIT
- * (limit: the largest stable step). */
+/* Prepares a method for a step. Refuses METHOD_UNKNOWN (NULL), NOT_FINITE and NOT_POSITIVE. Refuses OVERFLOW if the
+ * step is beyond 10⁹ s or the inverse of a quarter of it leaves the range. For explicit methods refuses
+ * STEP_BEYOND_DAMPING_LIMIT (limit: the largest stable step). */
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why);
 
 /* One step of h with the input held. Refuses STEP_BEYOND_GYROSCOPIC_LIMIT, STEP_GAINS_ENERGY, STEP_SINGULAR,
  * OVERFLOW (also where the heading has counted 2⁶² turns); the state is then as it was. An input with a number that
- * is not finite is refused with any of these, even where it is the point of a world force of 0; laconic_step_refusal
+ * is not finite is refused with any of these, even if it is the point of a world force of 0. laconic_step_refusal
  * finds the number. */
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                             const laconic_input *held);
@@ -322,18 +322,17 @@ laconic_status laconic_step(const laconic_model *model, const laconic_integrator
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                      const laconic_input *held, uint64_t steps, laconic_status *status);
 
-/* One step with the input sampled at its start, middle and end. Over the step torques and body
- * wrench are the parabola through the three; b of a force fixed in the world, which rotates against the body, varies
- * linearly between its values at the samples (in second-order methods at start and end). An explicit method of fourth
- * order takes each stage's sample; those of eighth order take a world force, too, along the parabola. Refuses as
- * laconic_step does. */
+/* One step with the input sampled at its start, middle and end. Over the step torques and body wrench are the
+ * parabola through the three. A force fixed in the world rotates against the body; its b varies linearly between its
+ * values at the samples (in second-order methods at start and end). An explicit method of fourth order takes each
+ * stage's sample; those of eighth order also take a world force along the parabola. Refuses as laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
 
-/* Makes the refusal that belongs to the status of a refused step (value: the step, limit: a smaller one to try, if
- * any); NOT_FINITE with its field where an input is at fault. `inputs`: the held one (input_count 1), or start, middle
- * and end in a row (3). */
+/* Makes the refusal for the status of a refused step (value: the step, limit: a smaller one to try, if any). If an
+ * input is at fault, NOT_FINITE has its field. `inputs`: the held one (input_count 1), or start, middle and end in a
+ * row (3). */
 void laconic_step_refusal(laconic_refusal *why, laconic_status status, const laconic_model *model,
                           const laconic_integrator *integrator, const laconic_state *state, const laconic_input *inputs,
                           int32_t input_count);
@@ -396,7 +395,7 @@ void laconic_derivative(laconic_rates *rates, const laconic_model *model, const 
 
 /* --------------------------------------------------------- ground reactions and normal loads -- */
 
-/* Constants of reactions and normal loads besides the model's. */
+/* Constants of reactions and normal loads, in addition to the model's. */
 typedef struct laconic_contact {
     int32_t constraint_count;
     int32_t lateral_row[LACONIC_MAX_WHEELS];            /* row of a fixed wheel's constraint, −1: none      */
@@ -455,9 +454,9 @@ typedef struct laconic_motion_change {
 } laconic_motion_change;
 
 /* Directional derivatives, analytic: (4.7) is quadratic in ν, linear in the voltages and torques, and bilinear in a
- * world force and its point. The margin has no derivative where the least margin passes from one wheel to another (that
- * of the first such wheel is given), or where a wheel's reaction is 0 (the reaction counts as constant). `now`: the
- * reactions of the motion. O(N). */
+ * world force and its point. The margin has no derivative where the least margin passes from one wheel to another
+ * (that of the first such wheel is given). It has none where a wheel's reaction is 0 (the reaction counts as
+ * constant). `now`: the reactions of the motion. O(N). */
 void laconic_derivative_tangent(laconic_rates *change, const laconic_model *model, const laconic_motion *at,
                                 const laconic_input *input, const laconic_variation *by);
 void laconic_motion_tangent(laconic_motion_change *change, const laconic_model *model, const laconic_motion *at,
@@ -500,9 +499,9 @@ laconic_status laconic_friction_step(const laconic_friction *friction, const lac
 laconic_real laconic_friction_energy_J(const laconic_friction *friction, const laconic_state *state,
                                        const laconic_slip *slip);
 
-/* Width of the smooth law below: friction has 71 % of its size at this slip. Robots move at 0.1 m/s and more, beside
- * which creeping at 1 mm/s is small, and the rate at which slip decays, μ g/ε ~ 5,000 1/s, is what stiff integrators
- * take without effort. */
+/* Width of the smooth law below: friction has 71 % of its size at this slip. Robots move at 0.1 m/s and more;
+ * creeping at 1 mm/s is small compared with that. Slip decays at the rate μ g/ε ~ 5,000 1/s, which stiff integrators
+ * handle without effort. */
 #define LACONIC_SMOOTH_SLIP_M_PER_S 1e-3
 
 /* Right-hand side for Model Exchange, by a smooth law: forces along slip/√(slip² + ε²). It has no rest: on a slope a
@@ -512,8 +511,8 @@ void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_r
                                  const laconic_real nu_rad_per_s[3], laconic_real heading_rad,
                                  const laconic_real wheel_speed_rad_per_s[], const laconic_input *input);
 
-/* What that law gives at one moment, where the friction step would leave what it found: forces, loads, currents and the
- * supply, from ν and the slip's own wheel speeds. Energies stay as they are. */
+/* Writes the results of that law at one moment, as the friction step would: forces, loads, currents and the supply,
+ * from ν and the slip's own wheel speeds. Energies stay as they are. */
 void laconic_slip_smooth(laconic_slip *slip, const laconic_friction *friction, const laconic_state *state,
                          const laconic_input *input);
 
@@ -536,7 +535,7 @@ void laconic_plant_wheel_speeds(const laconic_plant *plant, laconic_real *speed_
 void laconic_plant_wheel_angles(const laconic_plant *plant, laconic_real *angle_rad);
 laconic_real laconic_plant_energy_J(const laconic_plant *plant);
 
-/* Another step size from now on; plant->steps goes on counting. */
+/* Sets another step size; plant->steps continues to count. */
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why);
 
 /* Another payload, motor, motor_circuit, mass … while the vehicle moves (laconic_state_carry). The wheels must stay as
@@ -565,8 +564,8 @@ typedef struct laconic_outputs {
  * O(N). */
 void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
 
-/* laconic_reactions_of, and for a vehicle with friction the forces of the last step; lateral_N is then the force along
- * u turned by −90°, the axle of a fixed wheel, and brake_Nm the torque that holds a locked one. */
+/* Writes laconic_reactions_of; for a vehicle with friction the forces of the last step. Then lateral_N is the force
+ * along u turned by −90°, the axle of a fixed wheel, and brake_Nm the torque that holds a locked one. */
 void laconic_plant_reactions(laconic_reactions *reactions, const laconic_plant *plant, const laconic_contact *contact,
                              const laconic_input *input);
 
@@ -607,26 +606,26 @@ typedef struct laconic_schedule {
 int32_t laconic_schedule_at(laconic_input inputs[3], uint64_t *until_step, const laconic_schedule *schedule,
                             uint64_t step);
 
-/* What is kept of a run: rows of chosen outputs, and whether the no-slip model was true. */
+/* The record of a run: rows of chosen outputs, and whether the no-slip model was true. */
 typedef struct laconic_recorder {
     const laconic_contact *contact; /* of this plant; NULL: no reactions, which cost as much as some steps */
     laconic_grip *grip;             /* watched at the start of every step; not where it or contact is NULL */
     uint64_t every;                 /* a row at the start of each step whose number it divides; 0: none   */
     int32_t column_count;
     const uint32_t *column; /* offset of each in laconic_outputs, in bytes                  */
-    laconic_real *row;      /* room for row_room rows of column_count numbers               */
+    laconic_real *row;      /* space for row_room rows of column_count numbers               */
     uint64_t row_count, row_room;
     laconic_sensors *sensors; /* of this plant, which see every step; NULL: none            */
 } laconic_recorder;
 
-/* Takes steps along the schedule until `until_step` of the plant, the schedule's end, or the first row for which there
- * is no room: plant->steps is the number of steps taken, and the next call goes on from there. A row and the watch
- * take state and input at a step's start. `recorder` may be NULL. Gives the bits of laconic_plant_run and
+/* Takes steps along the schedule until `until_step` of the plant, the schedule's end, or the first row without
+ * space. plant->steps is then the number of steps taken, and the next call continues there. A row and the watch take
+ * state and input at a step's start. `recorder` may be NULL. Gives the bits of laconic_plant_run and
  * laconic_step_sampled, and refuses as they do. */
 laconic_status laconic_plant_follow(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                     laconic_recorder *recorder, laconic_refusal *why);
 
-/* Records one row, and watches the grip, of this moment: for the end of a run. There must be room for the row. */
+/* Records one row, and watches the grip, of this moment: for the end of a run. There must be space for the row. */
 void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input);
 
 #ifdef __cplusplus

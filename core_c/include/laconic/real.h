@@ -60,7 +60,7 @@ typedef int64_t laconic_turns;
 #error "laconic: LACONIC_MAX_SUPPORTS must be from 1 to 16"
 #endif
 
-#ifndef LACONIC_MAX_BODIES /* bodies on hinges besides the carriage (articulated.h); 0 leaves them all out */
+#ifndef LACONIC_MAX_BODIES /* bodies on hinges in addition to the carriage (articulated.h); 0 leaves them all out */
 #define LACONIC_MAX_BODIES 8
 #endif
 #if LACONIC_MAX_BODIES < 0 || LACONIC_MAX_BODIES > 10
@@ -103,7 +103,7 @@ typedef int64_t laconic_turns;
 #ifndef LACONIC_WITH_FRICTION /* 0: ideal ground and motors without limits alone */
 #define LACONIC_WITH_FRICTION 1
 #endif
-#ifndef LACONIC_WITH_EXPONENTIAL_GAUSS /* 0: integrators have no room for weights, and no method that needs them */
+#ifndef LACONIC_WITH_EXPONENTIAL_GAUSS /* 0: integrators have no space for weights, and no method that needs them */
 #define LACONIC_WITH_EXPONENTIAL_GAUSS 1
 #endif
 #ifndef LACONIC_WITH_PREPARE /* 0: model and integrator are constants made by the host */

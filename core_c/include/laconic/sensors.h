@@ -26,7 +26,7 @@ struct laconic_plant;
 struct laconic_refusal;
 
 #ifndef LACONIC_IMU_MAX_DELAY
-#define LACONIC_IMU_MAX_DELAY 64 /* steps; each needs room for three numbers */
+#define LACONIC_IMU_MAX_DELAY 64 /* steps; each needs space for three numbers */
 #endif
 #if LACONIC_IMU_MAX_DELAY < 0 || LACONIC_IMU_MAX_DELAY > 4096
 #error "laconic: LACONIC_IMU_MAX_DELAY must be from 0 to 4096"
@@ -36,9 +36,9 @@ struct laconic_refusal;
 
 /* All zero: an ideal IMU at the body's origin, along the body's axes. A sample is
  *     (1 + scale error) · true value + bias + noise,     then held within ± range,
- * and is shown `delay_steps` steps after it was taken.
- * The noise is white. Its density is that of data sheets, one-sided: a sample's standard deviation is the density times
- * the square root of half the sample rate, 1/(2 step_s), so the noise of a motion does not depend on the step. */
+ * and is shown `delay_steps` steps after it was taken. The noise is white. Its density is the one-sided one of data
+ * sheets. A sample's standard deviation is the density times the square root of half the sample rate, 1/(2 step_s).
+ * The noise of a motion therefore does not depend on the step. */
 typedef struct laconic_imu_settings {
     laconic_real x_m, y_m;    /* where it is, in the body frame                                          */
     laconic_real heading_rad; /* of its x axis in the body frame; its y axis is to the left of it         */
@@ -63,7 +63,7 @@ typedef struct laconic_encoder_settings {
 /* All zero: the sensors of a scene without any. */
 typedef struct laconic_sensor_settings {
     laconic_imu_settings imu;
-    int32_t encoder_wrap; /* encoders show 0 … wrap − 1 and begin again; 0: the whole int32_t, which wraps, too */
+    int32_t encoder_wrap; /* encoders show 0 … wrap − 1 and begin again; 0: the int32_t itself, which also wraps */
     laconic_encoder_settings encoder[LACONIC_MAX_WHEELS];
 } laconic_sensor_settings;
 
@@ -95,7 +95,7 @@ typedef struct laconic_sensor_settings {
 #define LACONIC_ENCODER_FIELDS(X, of) \
     X(of, 95, WHEEL_ENCODER_WRAP, wrap, encoder_wrap, INTEGER, NOT_NEGATIVE, NEVER)
 
-/* Of each wheel. */
+/* One row for each wheel. */
 #define LACONIC_WHEEL_ENCODER_FIELDS(X, of) \
     X(of, 93, WHEEL_ENCODER_COUNTS, counts_per_turn, encoder_counts_per_turn, INTEGER, NOT_NEGATIVE, NEVER) \
     X(of, 94, WHEEL_ENCODER_GEAR_RATIO, gear_ratio, encoder_gear_ratio, REAL, FINITE, NEVER)
@@ -107,14 +107,15 @@ typedef struct laconic_sensor_settings {
 
 #define LACONIC_SENSOR_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_SENSOR_FIELD_##IDENTIFIER = number,
 
-/* Numbers of a refusal's field beside those that laconic_field names; converted to it they stay what they are. */
+/* Numbers of a refusal's field in addition to those that laconic_field names; converted to it they keep their
+ * values. */
 typedef enum laconic_sensor_field {
     LACONIC_SENSOR_FIELDS(LACONIC_SENSOR_FIELD_NUMBER) LACONIC_SENSOR_FIELD_COUNT = 96
 } laconic_sensor_field;
 
-/* OK iff every number is usable, for a vehicle of so many wheels: else the first that is not, by the rules of the rows,
- * OVERFLOW where it is beyond ± 10¹⁵, and ABOVE_LIMIT for a delay beyond LACONIC_IMU_MAX_DELAY and for the counts of a
- * wheel that the vehicle does not have (limit 0). */
+/* Returns OK iff every number is usable for a vehicle with this number of wheels. Otherwise it refuses the first
+ * that is not, by the rules of the rows. Refuses OVERFLOW beyond ± 10¹⁵, and ABOVE_LIMIT for a delay beyond
+ * LACONIC_IMU_MAX_DELAY and for the counts of a wheel that the vehicle does not have (limit 0). */
 laconic_status laconic_sensor_settings_check(const laconic_sensor_settings *settings, int32_t wheel_count,
                                              struct laconic_refusal *why);
 
@@ -138,7 +139,7 @@ int32_t laconic_encoder_place(const laconic_encoder *encoder, int32_t counts_per
 /* How often the shaft has passed the index forwards, less how often backwards: count/counts_per_turn, rounded down. */
 int64_t laconic_encoder_turns(const laconic_encoder *encoder, int32_t counts_per_turn);
 
-/* What it shows: the count modulo `wrap`, or for 0 the lower 32 bits of the count as an int32_t. */
+/* Returns the encoder's reading: the count modulo `wrap`, or for 0 the lower 32 bits of the count as an int32_t. */
 int32_t laconic_encoder_shown(const laconic_encoder *encoder, int32_t wrap);
 
 #if LACONIC_MAX_WHEELS > 3
@@ -167,7 +168,7 @@ void laconic_normal_pair(laconic_real pair[2], uint64_t seed, uint32_t stream, u
 
 /* ------------------------------------------------------------------------- all of a vehicle -- */
 
-/* What an ideal IMU would feel at one moment, in its own axes. */
+/* Returns the reading of an ideal IMU at one moment, in its own axes. */
 typedef struct laconic_imu_sample {
     laconic_real specific_force_m_per_s2[2]; /* acceleration less that of gravity */
     laconic_real yaw_rate_rad_per_s;
@@ -191,16 +192,15 @@ typedef struct laconic_sensor_outputs {
     laconic_real encoder_count[LACONIC_MAX_WHEELS]; /* 0 without an encoder; in single exact up to 2^24: wrap earlier */
 } laconic_sensor_outputs;
 
-/* Sensors as after power-up, beside a plant that stands where it is: encoders at 0, and in the IMU's delay line the
- * sample of this moment, as of a vehicle that has moved so for long. Refuses as laconic_sensor_settings_check() does,
- * and changes nothing then. */
+/* Starts sensors as after power-up, next to a plant in its present state. Encoders are at 0, and the IMU's delay
+ * line holds the sample of this moment. Refuses as laconic_sensor_settings_check() does, and changes nothing then. */
 laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sensor_settings *settings,
                                      const struct laconic_plant *plant, struct laconic_refusal *why);
 
 /* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a
- * sensor must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2147483520 counts in
- * a step (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample is beyond ± 10¹⁵ m/s² (IMU_X or IMU_Y, the farther); that
- * step has been taken. */
+ * sensor must see each. In addition to their refusals, OVERFLOW if an encoder was turned by more than 2147483520
+ * counts in a step (WHEEL_ENCODER_COUNTS, item: the wheel). Also OVERFLOW if a sample is beyond ± 10¹⁵ m/s² (IMU_X
+ * or IMU_Y, the farther). The step has been taken then. */
 laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plant *plant, const laconic_input *held,
                                    uint64_t steps, struct laconic_refusal *why);
 laconic_status laconic_sensors_run_sampled(laconic_sensors *sensors, struct laconic_plant *plant,
@@ -217,14 +217,14 @@ laconic_status laconic_sensors_after(laconic_sensors *sensors, const struct laco
                                      const laconic_input *held, const laconic_sensor_moment *before,
                                      struct laconic_refusal *why);
 
-/* Inertial acceleration of the body's origin in body axes, v' + ω × v. On ideal ground exactly that of this moment with
- * this input. Of a vehicle with friction the mean over the last step, since contact forces there exist for a step
- * alone: the change of velocity over it, in the axes of its middle (before the first step as if it had gone on moving
- * so; `sensors` may be NULL only on ideal ground). */
+/* Inertial acceleration of the body's origin in body axes, v' + ω × v. On ideal ground exactly that of this moment
+ * with this input. With friction it is the mean over the last step, because contact forces exist for a complete
+ * step: the change of velocity over it, in the axes of its middle (before the first step as if the motion had
+ * continued; `sensors` may be NULL only on ideal ground). */
 void laconic_acceleration_body(laconic_real acceleration_m_per_s2[2], const laconic_sensors *sensors,
                                const struct laconic_plant *plant, const laconic_input *input);
 
-/* What the IMU shows: the sample of delay_steps ago with its errors. */
+/* Returns the IMU's reading: the sample of delay_steps ago with its errors. */
 void laconic_imu_read(const laconic_sensors *sensors, laconic_real step_s, laconic_real acceleration_m_per_s2[2],
                       laconic_real *yaw_rate_rad_per_s);
 
@@ -243,8 +243,8 @@ void laconic_imu_feel(laconic_imu_sample *sample, const laconic_imu_settings *im
                       const laconic_real nu_rad_per_s[3], const laconic_real nu_rad_per_s2[3],
                       laconic_real heading_rad);
 
-/* Directional derivative of that acceleration on ideal ground, along a change of ν and the change of ν' that
- * laconic_derivative_tangent gives for it; ν and its change are first projected onto what the constraints allow. */
+/* Returns the directional derivative of that acceleration on ideal ground, along a change of ν and the change of ν'
+ * that laconic_derivative_tangent gives for it. ν and its change are first projected onto the allowed motions. */
 void laconic_acceleration_tangent(laconic_real change[2], const struct laconic_model *model,
                                   const laconic_real nu_rad_per_s[3], const laconic_real by_nu_rad_per_s[3],
                                   const laconic_real by_nu_rad_per_s2[3]);

@@ -7,8 +7,8 @@
 
 /* clang-format off */
 
-/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit, $ for the names
- * of the methods). The numbers go on the wire: a new one comes last, and into the value table of RESULT.status in
+/* X(IDENTIFIER, name, explanation with the remedy; # is the refusal's value, @ its limit, $ the names of
+ * the methods). The wire carries the numbers: a new one comes last, and into the value table of RESULT.status in
  * laconic.dbc. */
 #define LACONIC_STATUSES(X) \
     X(OK, "ok", \
@@ -26,9 +26,9 @@
       "this wheel was never set; give its kind and position, or lower wheel_count") \
     X(WHEEL_KIND_UNKNOWN, "wheel kind unknown", \
       "# is no kind of wheel; use 1 (roller: omni or mecanum) or 2 (fixed)") \
-    X(TOO_MANY_WHEELS, "too many wheels", /* below 0, too */ \
+    X(TOO_MANY_WHEELS, "too many wheels", /* or below 0 */ \
       "# wheels, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_WHEELS") \
-    X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
+    X(TOO_MANY_SUPPORTS, "too many supports", /* or below 0 */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
       "fixed and locked wheels prevent every motion: in the one that those before it allow, this wheel would slide " \
@@ -39,7 +39,7 @@
       "than two correct digits; check the units") \
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
       "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
-    X(METHOD_UNKNOWN, "method unknown", \
+    X(METHOD_UNKNOWN, "method unknown", /* limit: how many there are for vehicles with hinges; 0 for all others */ \
       "there is no such method; use $") \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
       "the interval is no whole number of steps of # s; use @ s") \
@@ -57,7 +57,7 @@
       "# is above @; give @ or less") \
     X(MOTOR_CIRCUIT_UNKNOWN, "motor circuit unknown", \
       "# is no motor circuit; use 0 (driven), 1 (open) or 2 (shorted)") \
-    X(FRICTION_TWICE, "friction twice", /* the vehicle's friction coefficient besides the ground's */ \
+    X(FRICTION_TWICE, "friction twice", /* in addition to the ground's coefficient */ \
       "# is given besides ground.friction_coefficient, by which wheels slip; take this one out") \
     X(FRICTION_MISSING, "friction missing", /* of a wheel, its rollers or an axle, on ideal ground */ \
       "# has no effect on ideal ground; give ground.friction_coefficient, too") \
@@ -71,7 +71,7 @@
       "place them on one axle line") \
     X(ZERO, "zero", \
       "# is zero; give a value above 0, or below 0 for a shaft that turns the other way") \
-    X(TOO_MANY_BODIES, "too many bodies", /* below 0, too */ \
+    X(TOO_MANY_BODIES, "too many bodies", /* or below 0 */ \
       "# bodies on hinges, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_BODIES") \
     X(BODY_UNKNOWN, "body unknown", /* a wheel's body, or a parent that does not come before its body */ \
       "# is not the number of a body that can be used here; give 0 (the carriage) to @, parents before their bodies") \

@@ -16,7 +16,7 @@ typedef enum laconic_wheel_kind {
     LACONIC_WHEEL_FIXED = 2   /* ordinary, not steered: does not move along its axle               */
 } laconic_wheel_kind;
 
-/* What a wheel's motor is connected to. */
+/* The connection of a wheel's motor. */
 typedef enum laconic_motor_circuit {
     LACONIC_MOTOR_DRIVEN = 0, /* to its controller, which sets voltage_V                            */
     LACONIC_MOTOR_OPEN = 1,   /* to nothing: only its viscous friction is left                      */
@@ -78,12 +78,11 @@ typedef struct laconic_drive {
     laconic_real supply_resistance_ohm;  /* by which the supply sags under the motors' currents      */
     laconic_real current_limit_A;        /* of each motor; 0: no limit                               */
     laconic_real winding_resistance_ohm; /* R_a: a motor's torque on its wheel is c1 R_a per ampere */
-    laconic_real
-        viscous_friction_Nms; /* n² d, at the wheel: the part of c2 that is no back-EMF; all of c2 where that is
+    laconic_real viscous_friction_Nms; /* n² d, at the wheel: the part of c2 without back-EMF; all of c2 where that is
                                             less */
 } laconic_drive;
 
-/* What the user knows of the robot. Start from all zero and set what applies. M and I_S include the wheels. */
+/* The user's description of the robot. Start from all zero and set what applies. M and I_S include the wheels. */
 typedef struct laconic_vehicle {
     laconic_real mass_kg;              /* M, without payload                                     */
     laconic_real yaw_inertia_kgm2;     /* I_S, about the vertical through the centre of mass     */
@@ -118,7 +117,7 @@ typedef struct laconic_motor {
     laconic_real rotor_inertia_kgm2;
 } laconic_motor;
 
-/* What acts on the vehicle. All zero: only its motors' damping acts. */
+/* Everything that acts on the vehicle. All zero: only its motors' damping acts. */
 typedef struct laconic_input {
     laconic_real voltage_V[LACONIC_MAX_WHEELS];      /* U_i                                      */
     laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* any other torque on the axle             */
@@ -149,7 +148,7 @@ typedef enum laconic_field_kind {
                                 wheel. On the wire, and as the key of a scene, 1 and true mean that it is there     */
 } laconic_field_kind;
 
-/* What a number must satisfy; all but UNCHECKED must be finite, and a vehicle's have finite squares.
+/* The rule for a number. All but UNCHECKED must be finite, and a vehicle's have finite squares.
  * laconic_vehicle_check() goes through a vehicle's own numbers and its payload's rule by rule in this order. */
 typedef enum laconic_field_rule {
     LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is valid */
@@ -286,7 +285,7 @@ typedef enum laconic_field_need {
     X(of, 41, VISCOUS_FRICTION, viscous_friction_Nms,     viscous_friction_Nms,     REAL, NOT_NEGATIVE, NEVER) \
     X(of, 42, ROTOR_INERTIA,    rotor_inertia_kgm2,       rotor_inertia_kgm2,       REAL, NOT_NEGATIVE, NEVER)
 
-/* What a plant starts with: vehicle, start, method and step. */
+/* The start of a plant: vehicle, start, method and step. */
 #define LACONIC_PARAMETER_FIELDS(X) \
     LACONIC_VEHICLE_FIELDS(X, VEHICLE) LACONIC_PAYLOAD_FIELDS(X, PAYLOAD) \
     LACONIC_GROUND_FIELDS(X, GROUND) LACONIC_DRIVE_FIELDS(X, DRIVE) \

@@ -51,7 +51,8 @@ laconic_status laconic_articulated_integrator_prepare(laconic_articulated_integr
                                                       laconic_refusal *why) {
     laconic_articulated_integrator fresh = ALL_ZERO;
     if (method < 0 || method >= LACONIC_ARTICULATED_METHOD_COUNT)
-        return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
+        return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, (real)method,
+                      (real)LACONIC_ARTICULATED_METHOD_COUNT);
     const laconic_status status = check_step(step_s, why);
     if (status != LACONIC_OK) return status;
     const bool is_explicit = method == LACONIC_ARTICULATED_RK4 || method == LACONIC_ARTICULATED_CIRCLE;

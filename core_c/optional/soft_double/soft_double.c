@@ -1,5 +1,5 @@
 /* Addition and subtraction in double precision for Arm processors that have none, such as Cortex-M3, M4 and M33:
- * libgcc's round some differences wrongly (docs/soft-double.md). Link this file into firmware that computes in double;
+ * libgcc's round some differences wrongly (docs/c.md). Link this file into firmware that computes in double;
  * no source changes, since compilers call these functions by the names of the processor's run-time ABI. Elsewhere it
  * holds the functions of soft_double.h alone.
  *

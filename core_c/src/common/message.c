@@ -1,6 +1,17 @@
 /* The texts of a refusal: the name of its status, and one line with field, item, fault and remedy. */
 #include "common.h"
 
+/* Numbers have six digits, as printf's %.6g; two that differ have as many more as show it, up to what this precision
+ * holds. */
+#define FEWEST_DIGITS 6
+#if defined LACONIC_SINGLE
+typedef int32_t decimal;
+#define MOST_DIGITS 9
+#else
+typedef int64_t decimal;
+#define MOST_DIGITS 17
+#endif
+
 typedef struct writer {
     char *text;
     size_t size, length;
@@ -15,8 +26,8 @@ static void put_text(writer *w, const char *text) {
     for (; *text != '\0'; text++) put(w, *text);
 }
 
-static void put_count(writer *w, int32_t number) {
-    int32_t divisor = 1;
+static void put_count(writer *w, decimal number) {
+    decimal divisor = 1;
     while (number / divisor >= 10) divisor *= 10;
     for (; divisor > 0; divisor /= 10) put(w, (char)('0' + number / divisor % 10));
 }
@@ -36,8 +47,8 @@ static int32_t scale_to_digits(real *x) {
 }
 
 /* Writes the `count` digits of a number without trailing zeros; the point stands behind digit `point`. */
-static void put_digits(writer *w, int32_t digits, int32_t count, int32_t point) {
-    int32_t divisor = 1;
+static void put_digits(writer *w, decimal digits, int32_t count, int32_t point) {
+    decimal divisor = 1;
     for (int32_t k = 1; k < count; k++) divisor *= 10;
     for (int32_t k = 0; divisor > 0; k++, divisor /= 10) {
         if (k >= point && digits == 0) return;
@@ -47,8 +58,8 @@ static void put_digits(writer *w, int32_t digits, int32_t count, int32_t point) 
     }
 }
 
-/* Six digits, as printf's %.6g. */
-static void put_number(writer *w, real x) {
+static void put_number(writer *w, real x, int32_t count) {
+    decimal power = 1; /* 10^(count - 1) */
     if (x != x) {
         put_text(w, "NaN");
         return;
@@ -60,9 +71,10 @@ static void put_number(writer *w, real x) {
         return;
     }
     int32_t exponent = scale_to_digits(&x);
-    int32_t digits = (int32_t)(x * R(100000) + R(0.5));
-    if (digits >= 1000000) {
-        digits = 100000;
+    for (int32_t k = 1; k < count; k++) power *= 10;
+    decimal digits = (decimal)(x * (real)power + R(0.5));
+    if (digits >= 10 * power) {
+        digits = power;
         exponent++;
     }
     if (exponent >= -4 && exponent < 0) {
@@ -70,10 +82,10 @@ static void put_number(writer *w, real x) {
         for (int32_t k = exponent + 1; k < 0; k++) put(w, '0');
         while (digits % 10 == 0) digits /= 10;
         put_count(w, digits);
-    } else if (exponent >= 0 && exponent < 6) {
-        put_digits(w, digits, 6, exponent + 1);
+    } else if (exponent >= 0 && exponent < count) {
+        put_digits(w, digits, count, exponent + 1);
     } else {
-        put_digits(w, digits, 6, 1);
+        put_digits(w, digits, count, 1);
         put_text(w, exponent < 0 ? "e-" : "e+");
         put_count(w, exponent < 0 ? -exponent : exponent);
     }
@@ -100,6 +112,9 @@ static size_t end_text(const writer *w) {
 
 #define METHOD_NAME(number, identifier, name, order, TAKES, KEEPS, NEEDS, title) LACONIC_METHOD_WITH_##NEEDS(name, )
 
+/* As laconic_articulated_method_name() has them: that part is linked only where it is called. */
+#define METHODS_WITH_HINGES "auto, rk4, circle or moebius-4"
+
 /* All in the order of the numbers, "or" before the last. */
 static void put_method_names(writer *w) {
     static const char *const names[] = {LACONIC_METHODS(METHOD_NAME)};
@@ -111,13 +126,31 @@ static void put_method_names(writer *w) {
     put_text(w, names[last]);
 }
 
+static bool look_alike(real a, real b, int32_t count) {
+    char one[32], other[32];
+    writer first = {NULL, 0, 0}, second = {NULL, 0, 0};
+    first.text = one;
+    second.text = other;
+    first.size = second.size = sizeof one;
+    put_number(&first, a, count);
+    put_number(&second, b, count);
+    if (first.length != second.length) return false;
+    for (size_t k = 0; k < first.length; k++)
+        if (one[k] != other[k]) return false;
+    return true;
+}
+
 static void put_explanation(writer *w, const laconic_refusal *why) {
     const char *c;
+    int32_t count = FEWEST_DIGITS;
+    while (count < MOST_DIGITS && why->value != why->limit && look_alike(why->value, why->limit, count)) count++;
     for (c = explanation(why->status); *c != '\0'; c++) {
         if (*c == '#')
-            put_number(w, why->value);
+            put_number(w, why->value, count);
         else if (*c == '@')
-            put_number(w, why->limit);
+            put_number(w, why->limit, count);
+        else if (*c == '$' && why->limit > R(0))
+            put_text(w, METHODS_WITH_HINGES);
         else if (*c == '$')
             put_method_names(w);
         else

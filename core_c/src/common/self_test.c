@@ -72,7 +72,7 @@ static bool flushes_small_numbers(void) {
     return opaque(half * opaque(R(2))) != LACONIC_REAL_MIN;
 }
 
-/* libgcc's assembly for Arm without double precision: 1 − 2⁻³³(1 + ε) loses a bit too much (docs/soft-double.md). */
+/* libgcc's assembly for Arm without double precision: 1 − 2⁻³³(1 + ε) loses a bit too much (docs/c.md). */
 static bool subtracts_wrongly(void) {
     const real one = opaque(R(1)), tiny = R(1.16415321826934814453125e-10);
     return one - opaque(tiny * (R(1) + LACONIC_EPSILON)) != R(1) - tiny;

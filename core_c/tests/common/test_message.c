@@ -91,6 +91,40 @@ static void a_number_that_rounds_up_to_the_next_power_stays_right(void) {
     TEST_ASSERT_EQUAL_STRING("9.99999", shown(9.99999));
 }
 
+static void two_numbers_that_differ_are_shown_by_digits_that_differ(void) {
+    TEST_ASSERT_EQUAL_STRING("0.1250001 is above 0.125; give 0.125 or less",
+                             message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, 0.1250001, 0.125));
+    TEST_ASSERT_EQUAL_STRING("1000001 is above 1000000; give 1000000 or less",
+                             message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, 1000001, 1000000));
+    TEST_ASSERT_EQUAL_STRING("-2000000 makes a fixed or locked wheel slide; the nearest value that the wheels allow is "
+                             "-2000002",
+                             message(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_NONE, 0, -2000000, -2000002));
+    TEST_ASSERT_EQUAL_STRING("0.0001234564 is above 0.0001234561; give 0.0001234561 or less",
+                             message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, 0.0001234564, 0.0001234561));
+    TEST_ASSERT_EQUAL_STRING_LEN(EITHER("1.0000002e+10 is above 1e+10", "1.0000004e+10 is above 1e+10"),
+                                 message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, 1.0000002e10, 1e10), 28);
+}
+
+static void numbers_that_are_equal_have_six_digits(void) {
+    TEST_ASSERT_EQUAL_STRING("3.33333 is above 3.33333; give 3.33333 or less",
+                             message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, 10.0 / 3, 10.0 / 3));
+    TEST_ASSERT_EQUAL_STRING("NaN is above NaN; give NaN or less",
+                             message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, (double)NAN, (double)NAN));
+}
+
+#if !defined LACONIC_SINGLE
+/* From some units in the last place on, which scaling rounds. */
+static void close_numbers_in_double_are_told_apart(void) {
+    const double values[] = {1, 0.1, 12.5, 0.00033, 123456.7, 1e12, 3e-7, 9.5};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        double above = 0, limit = 0;
+        (void)message(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0, values[i] * (1 + 4 * DBL_EPSILON), values[i]);
+        TEST_ASSERT_EQUAL_INT(2, sscanf(text, "%lf is above %lf", &above, &limit));
+        TEST_ASSERT_TRUE_MESSAGE(above > limit, text);
+    }
+}
+#endif
+
 /* Just below the middle of two: a power of 10 taken out and put back would round it up. */
 static void a_number_is_scaled_no_farther_than_it_must_be(void) {
     TEST_ASSERT_EQUAL_STRING("92.5649", shown(EITHER(92.564949999999996, 92.5649)));
@@ -149,6 +183,11 @@ int main(void) {
     RUN_TEST(numbers_are_written_as_printf_writes_them);
     RUN_TEST(a_number_that_rounds_up_to_the_next_power_stays_right);
     RUN_TEST(a_number_is_scaled_no_farther_than_it_must_be);
+    RUN_TEST(two_numbers_that_differ_are_shown_by_digits_that_differ);
+    RUN_TEST(numbers_that_are_equal_have_six_digits);
+#if !defined LACONIC_SINGLE
+    RUN_TEST(close_numbers_in_double_are_told_apart);
+#endif
     RUN_TEST(zero_infinity_and_nan_are_written_out);
     RUN_TEST(the_ends_of_the_range_are_shown);
     RUN_TEST(a_short_buffer_gets_what_fits_and_the_whole_length_is_returned);

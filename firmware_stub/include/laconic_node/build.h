@@ -51,6 +51,8 @@ LACONIC_NODE_BUILT(LACONIC_DECLARE_BUILT)
 static inline void laconic_check_node_build(void){LACONIC_NODE_BUILT(LACONIC_NODE_CALL_BUILT)
                                                       LACONIC_BUILT(LACONIC_NODE_CALL_BUILT)}
 
+#ifndef LACONIC_IN_CORE /* sources that are compiled together with the core, as those of an FMU */
 #define laconic_node_init(...) (laconic_check_node_build(), laconic_node_init(__VA_ARGS__))
+#endif
 
 #endif

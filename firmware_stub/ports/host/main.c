@@ -81,7 +81,7 @@ static const char help[] =
     "  --with-parent    end when standard input ends: a pipe of a program that starts the node and may be killed\n"
     "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
     "  --socketcan IF   serve a CAN interface of Linux instead, such as can0, which must be up: no port is opened\n"
-    "  --key FILE       take commands only with codes by the key in FILE, 32 hexadecimal digits (docs/secure.md)\n"
+    "  --key FILE       take commands only with codes by the key in FILE, 32 hexadecimal digits (docs/rig-ports.md)\n"
     "  -h, --help       this text\n"
     "\n"
     "Drive it:  laconic rig SCENE --interface slcan --channel socket://127.0.0.1:PORT\n";

@@ -1,5 +1,9 @@
 /* Tests of faults by order, laconic_drive_order(), as the controllers of every protocol meet them. */
+#include "octets.h"
+#include "place.h"
+
 #include "drive_bench.h"
+#include "unity.h"
 
 enum { FIRST_ID = 1, SECOND_ID = 2 };
 
@@ -164,6 +168,199 @@ static void a_drive_that_goes_off_the_bus_takes_back_what_was_due(void) {
     }
 }
 
+/* Tests of place.c: places lose nothing over any distance, and motions keep their limits. */
+
+#define R(number) ((laconic_real)(number))
+#define STEP_S R(0.001)
+#define near(expected, actual, within) TEST_ASSERT_DOUBLE_WITHIN(within, (double)(expected), (double)(actual))
+
+static drive_place at(int64_t count, laconic_real rest) {
+    const drive_place place = {count, rest};
+    return place;
+}
+
+static void is_at(int64_t count, laconic_real rest, drive_place place) {
+    TEST_ASSERT_EQUAL_INT64(count, place.count);
+    TEST_ASSERT_TRUE(place.rest == rest);
+}
+
+/* --- places ------------------------------------------------------------------------------------------------------ */
+
+static void a_place_is_whole_counts_and_a_share_of_one(void) {
+    is_at(6, R(0.25), place_moved(at(5, R(0.5)), R(0.75)));
+    is_at(4, R(0.75), place_moved(at(5, R(0.5)), R(-0.75)));
+    is_at(8, R(0.5), place_moved(at(5, R(0.5)), 3));
+    is_at(-2, R(0.5), place_moved(at(0, 0), R(-1.5)));
+}
+
+static void a_way_too_small_for_a_share_loses_no_count(void) { is_at(7, 0, place_moved(at(7, 0), -LACONIC_REAL_MIN)); }
+
+static void what_is_no_number_moves_no_place(void) {
+    is_at(5, R(0.5), place_moved(at(5, R(0.5)), real_not_a_number()));
+}
+
+static void ways_beyond_the_range_are_taken_as_its_ends(void) {
+    is_at(2147483520, 0, place_moved(at(0, 0), R(1e20)));
+    is_at(-2147483520, 0, place_moved(at(0, 0), R(-1e20)));
+    is_at(3LL << 30, 0, place_at(R(1e20), 3));
+    is_at(-(3LL << 30), 0, place_at(R(-1e20), 3));
+}
+
+static void counts_wrap_at_their_ends(void) {
+    is_at(INT64_MIN, 0, place_moved(at(INT64_MAX, 0), 1));
+    is_at(INT64_MAX, R(0.5), place_moved(at(INT64_MIN, 0), R(-0.5)));
+    is_at(INT64_MIN + 1, 0, place_sum(at(INT64_MAX, 0), at(2, 0)));
+    is_at(3, 0, place_difference(at(INT64_MIN + 1, 0), at(INT64_MAX - 1, 0)));
+}
+
+static void sums_and_differences_carry_the_share(void) {
+    is_at(9, R(0.25), place_sum(at(5, R(0.5)), at(3, R(0.75))));
+    is_at(1, R(0.75), place_difference(at(5, R(0.5)), at(3, R(0.75))));
+    TEST_ASSERT_TRUE(place_counts(at(5, R(0.5))) == R(5.5));
+}
+
+static void turns_become_a_place_and_the_place_these_turns(void) {
+    is_at(5120, 0, place_at(R(1.25), 4096));
+    is_at(-5120, 0, place_at(R(-1.25), 4096));
+    is_at(2, R(0.5), place_at(R(0.25), 10));
+    TEST_ASSERT_TRUE(place_turns(at(5120, 0), 4096) == R(1.25));
+    TEST_ASSERT_TRUE(place_turns(at(-5120, 0), 4096) == R(-1.25));
+    TEST_ASSERT_TRUE(place_turns(at(4096LL << 20, 0), 4096) == R(1048576));
+    near(3e18, place_turns(at(3000000000000000000LL, 0), 1), 1e13); /* more turns than a whole number has here */
+}
+
+/* --- motions ----------------------------------------------------------------------------------------------------- */
+
+/* To a place 1000 counts away, from rest to rest. */
+static drive_motion motion_of(laconic_real way) {
+    drive_motion motion = {.speed_limit = 100, .acceleration = 1000, .deceleration = 500};
+    motion.target = place_moved(motion.place, way);
+    return motion;
+}
+
+/* Steps until it arrives: their number. No step changes the speed by more than its limits allow. */
+static int arrive(drive_motion *motion) {
+    int steps = 1;
+    for (laconic_real before = motion->speed; !motion_step(motion, STEP_S) && steps < 100000; steps++) {
+        const laconic_real change = real_magnitude(motion->speed - before);
+        TEST_ASSERT_TRUE(change <= motion->acceleration * STEP_S * R(1.001));
+        before = motion->speed;
+    }
+    is_at(motion->target.count, motion->target.rest, motion->place);
+    TEST_ASSERT_TRUE(motion->speed == motion->target_speed);
+    return steps;
+}
+
+static void a_motion_takes_the_time_of_its_limits_in_both_directions(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        drive_motion motion = motion_of(R(1000 * side));
+        motion_step(&motion, STEP_S);
+        near(side, motion.speed, 1e-4);
+        const int steps = arrive(&motion); /* 5 counts to speed up, 10 to slow down, the rest at 100 counts/s */
+        near(0.1 + 0.2 + (1000 - 15) / 100.0, steps * 0.001, 0.01);
+    }
+}
+
+static void a_short_motion_never_reaches_its_limit(void) {
+    drive_motion motion = motion_of(R(1.5)); /* 1/2·v²/1000 + 1/2·v²/500 = 1.5: v² = 1000 */
+    laconic_real fastest = 0;
+    for (int k = 0; k < 1000 && !motion_step(&motion, STEP_S); k++)
+        if (motion.speed > fastest) fastest = motion.speed;
+    near(31.6, fastest, 1);
+    is_at(1, R(0.5), motion.place);
+}
+
+static void a_motion_without_a_limit_of_its_speed_only_speeds_up_and_slows_down(void) {
+    drive_motion motion = motion_of(1500);
+    motion.speed_limit = LACONIC_REAL_MAX * 2;
+    near(1 + 2, arrive(&motion) * 0.001, 0.02);
+}
+
+static void a_motion_beyond_its_limit_comes_back_to_exactly_it(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        drive_motion motion = motion_of(1000);
+        motion.speed = R(side * 100.75);
+        motion_step(&motion, STEP_S);
+        near(side * 100.25, motion.speed, 1e-3);
+        motion_step(&motion, STEP_S);
+        TEST_ASSERT_TRUE(motion.speed == R(side * 100));
+    }
+}
+
+static void a_motion_that_cannot_stop_in_time_brakes_as_it_may_and_comes_back(void) {
+    drive_motion motion = motion_of(1);
+    motion.speed = 100;
+    motion_step(&motion, STEP_S);
+    near(99.5, motion.speed, 1e-3);
+    for (int k = 0; k < 199; k++) TEST_ASSERT_FALSE(motion_step(&motion, STEP_S));
+    near(0, motion.speed, 0.51);
+    near(10, place_counts(motion.place), 0.2); /* v²/(2·500) */
+    arrive(&motion);
+    is_at(1, 0, motion.place);
+}
+
+static void a_motion_away_from_its_target_turns_back(void) {
+    drive_motion motion = motion_of(10);
+    motion.speed = -50;
+    motion_step(&motion, STEP_S);
+    near(-49.5, motion.speed, 1e-3);
+    arrive(&motion);
+    is_at(10, 0, motion.place);
+}
+
+static void a_target_that_moves_is_met_at_its_speed(void) {
+    drive_motion motion = motion_of(100);
+    motion.target_speed = 50;
+    arrive(&motion);
+    TEST_ASSERT_TRUE(motion.speed == 50 && place_counts(motion.place) > 150);
+    TEST_ASSERT_TRUE(motion_step(&motion, STEP_S)); /* and stays with it */
+    TEST_ASSERT_TRUE(motion.speed == 50 && place_counts(place_difference(motion.target, motion.place)) == 0);
+}
+
+static void a_way_that_a_step_makes_is_made_in_one(void) {
+    drive_motion motion = motion_of(R(0.00325)); /* less than a stop from the next step's speed, 1.5, needs */
+    motion.acceleration = 1500;
+    TEST_ASSERT_TRUE(motion_step(&motion, STEP_S));
+    TEST_ASSERT_TRUE(motion.speed == 0 && place_counts(motion.place) == place_counts(motion.target));
+}
+
+static void a_slow_motion_arrives_without_a_jolt(void) {
+    drive_motion motion = motion_of(R(0.05));
+    motion.acceleration = motion.deceleration = 10;
+    laconic_real before = 0;
+    bool arrives = false;
+    for (int k = 0; k < 1000 && !arrives; k++) {
+        before = motion.speed;
+        arrives = motion_step(&motion, STEP_S);
+    }
+    TEST_ASSERT_TRUE(arrives);
+    TEST_ASSERT_TRUE(before <= 2 * 10 * STEP_S);
+}
+
+static void motions_of_any_way_go_never_beyond_their_target_and_end_without_a_jolt(void) {
+    for (int k = 1; k <= 500; k++) {
+        drive_motion motion = motion_of(R(0.0771) * (laconic_real)k);
+        laconic_real before = 0;
+        bool arrives = false;
+        for (int steps = 0; steps < 10000 && !arrives; steps++) {
+            before = motion.speed;
+            arrives = motion_step(&motion, STEP_S);
+            TEST_ASSERT_FALSE(place_counts(place_difference(motion.target, motion.place)) < 0);
+        }
+        TEST_ASSERT_TRUE(arrives && before <= 2 * motion.deceleration * STEP_S);
+    }
+}
+
+static void a_strong_deceleration_ends_at_the_limit_of_the_speed_too(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        drive_motion motion = motion_of(R(100000 * side));
+        motion.speed = R(101 * side);
+        motion.deceleration = 100500; /* 100.5 counts/s in a step */
+        motion_step(&motion, STEP_S);
+        TEST_ASSERT_TRUE(motion.speed == R(100 * side));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_drive_off_the_bus_neither_hears_nor_is_heard_and_comes_back);
@@ -171,5 +368,23 @@ int main(void) {
     RUN_TEST(an_order_replaces_the_one_before_it);
     RUN_TEST(an_order_that_is_repeated_changes_nothing);
     RUN_TEST(a_drive_that_goes_off_the_bus_takes_back_what_was_due);
+    RUN_TEST(a_place_is_whole_counts_and_a_share_of_one);
+    RUN_TEST(a_way_too_small_for_a_share_loses_no_count);
+    RUN_TEST(what_is_no_number_moves_no_place);
+    RUN_TEST(ways_beyond_the_range_are_taken_as_its_ends);
+    RUN_TEST(counts_wrap_at_their_ends);
+    RUN_TEST(sums_and_differences_carry_the_share);
+    RUN_TEST(turns_become_a_place_and_the_place_these_turns);
+    RUN_TEST(a_motion_takes_the_time_of_its_limits_in_both_directions);
+    RUN_TEST(a_short_motion_never_reaches_its_limit);
+    RUN_TEST(a_motion_without_a_limit_of_its_speed_only_speeds_up_and_slows_down);
+    RUN_TEST(a_motion_beyond_its_limit_comes_back_to_exactly_it);
+    RUN_TEST(a_motion_that_cannot_stop_in_time_brakes_as_it_may_and_comes_back);
+    RUN_TEST(a_motion_away_from_its_target_turns_back);
+    RUN_TEST(a_target_that_moves_is_met_at_its_speed);
+    RUN_TEST(a_way_that_a_step_makes_is_made_in_one);
+    RUN_TEST(a_slow_motion_arrives_without_a_jolt);
+    RUN_TEST(motions_of_any_way_go_never_beyond_their_target_and_end_without_a_jolt);
+    RUN_TEST(a_strong_deceleration_ends_at_the_limit_of_the_speed_too);
     return UNITY_END();
 }

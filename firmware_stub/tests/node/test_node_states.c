@@ -3,13 +3,20 @@
 
 #include "bench.h"
 #include "drive_scene.h"
+#include "laconic_node/crc.h"
+#include "laconic_node/loader.h"
+#include "laconic_wire.h"
 #include "unity.h"
 
+#include <string.h>
+
 static uint8_t data[LACONIC_FRAME_BYTES];
+static laconic_loader loader;
 
 void setUp(void) {
     bench_begin();
     memset(data, 0, sizeof data);
+    laconic_loader_begin(&loader);
 }
 void tearDown(void) {}
 
@@ -205,6 +212,94 @@ static void a_sync_of_too_many_steps_that_would_be_sampled_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT32(0, node.lockstep.steps_due);
 }
 
+/* Tests of loader.c: its beginning, the numbers of its fields, and what its checksum is of. */
+
+/* CRC-32 of the upper half's bit and the six bytes behind it, of each frame: not of its protection. */
+static void the_checksum_is_that_of_what_a_frame_tells(void) {
+    static const uint8_t checked[7] = {0x10, 1, 0, 0x11, 0x22, 0x33, 0x44};
+    uint8_t given[9] = {0xAA, 0x1B, 1, 0, 0x11, 0x22, 0x33, 0x44, 0xBB};
+    laconic_loader_take(&loader, given);
+    TEST_ASSERT_EQUAL_HEX32(laconic_crc32(LACONIC_CRC32_START, checked, 7), loader.checksum);
+    TEST_ASSERT_EQUAL_UINT16(1, loader.frame_count);
+}
+
+static void a_loader_begins_with_the_usual_plan_of_drives(void) {
+    laconic_drive_plan usual;
+    memset(&usual, 0, sizeof usual);
+    laconic_drive_plan_begin(&usual);
+    TEST_ASSERT_EQUAL_MEMORY(&usual, &loader.parameters.drives, sizeof usual);
+}
+
+/* laconic.dbc and the rows of vehicle.h, settings.h and sensors.h each have the number. */
+static void the_wire_numbers_each_field_as_its_row_does(void) {
+#define COMPARED(of, number, IDENTIFIER, ...) \
+    TEST_ASSERT_EQUAL_MESSAGE(LACONIC_WIRE_FIELD_##IDENTIFIER, number, #IDENTIFIER);
+    LACONIC_LOADER_EVERY(COMPARED)
+#undef COMPARED
+}
+
+/* Tests of node_pack.c: wheel angles, in groups of three from the first wheel on. */
+
+static void wheel_angles_are_wrapped_and_grouped(void) {
+    struct laconic_dbc_wheel_angle_t frame;
+    laconic_real angle[LACONIC_MAX_WHEELS];
+    bench_load(4);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    bench_voltage(1, 5 * VOLT, 0);
+    bench_step(2000);
+    laconic_plant_wheel_angles(&node.plant, angle);
+    TEST_ASSERT_TRUE(angle[0] > 4);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
+    TEST_ASSERT_EQUAL_INT(0, frame.group);
+    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[0]) * 10000), frame.wheel_angle_1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
+    TEST_ASSERT_EQUAL_INT(1, frame.group);
+    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[3]) * 10000), frame.wheel_angle_1);
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+}
+
+static void frames_of_wheels_begin_anew_with_each_step(void) {
+    bench_load(4);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    for (int k = 0; k < 2; k++) {
+        laconic_frame frame;
+        bench_step(1);
+        TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame)); /* one of two is fetched */
+        TEST_ASSERT_EQUAL_UINT8(0, frame.data[1] >> 5);
+    }
+}
+
+static void every_wheel_of_a_group_shows_its_own_angle(void) {
+    struct laconic_dbc_wheel_angle_t frame;
+    laconic_real angle[LACONIC_MAX_WHEELS];
+    bench_load(3);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    bench_step(500);
+    laconic_plant_wheel_angles(&node.plant, angle);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
+    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[1]) * 10000), frame.wheel_angle_2);
+    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[2]) * 10000), frame.wheel_angle_3);
+    TEST_ASSERT_TRUE(frame.wheel_angle_2 != 0);
+}
+
+static void angles_of_all_wheels_come_in_as_many_groups_as_they_need(void) {
+    bench_load(LACONIC_MAX_WHEELS);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    bench_step(1);
+    for (int k = 0; k < (LACONIC_MAX_WHEELS + 2) / 3; k++) {
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+        TEST_ASSERT_EQUAL_INT(k, data[1] >> 5);
+    }
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_empty_node_starts_neither_a_free_run_nor_drives);
@@ -225,5 +320,12 @@ int main(void) {
     RUN_TEST(an_order_is_refused_for_two_reasons_as_for_one);
     RUN_TEST(voltages_are_refused_for_two_reasons_as_for_one);
     RUN_TEST(a_sync_of_too_many_steps_that_would_be_sampled_is_refused);
+    RUN_TEST(the_wire_numbers_each_field_as_its_row_does);
+    RUN_TEST(the_checksum_is_that_of_what_a_frame_tells);
+    RUN_TEST(a_loader_begins_with_the_usual_plan_of_drives);
+    RUN_TEST(wheel_angles_are_wrapped_and_grouped);
+    RUN_TEST(frames_of_wheels_begin_anew_with_each_step);
+    RUN_TEST(every_wheel_of_a_group_shows_its_own_angle);
+    RUN_TEST(angles_of_all_wheels_come_in_as_many_groups_as_they_need);
     return UNITY_END();
 }

@@ -6,7 +6,7 @@
 
 #include "model_interface.h"
 
-/* A communication step of a billion internal ones is allowed, of a saved state's 1e-12 s, too, but takes minutes;
+/* A communication step of a hundred million internal ones is allowed, of 1e-12 s, too, but takes minutes;
  * thirty show as much as a thousand. */
 static inline bool takes_too_long(const void *instance, double communication_step_s) {
     const double own_s = ((const fmu_instance *)instance)->model.step_s;

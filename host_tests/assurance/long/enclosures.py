@@ -8,9 +8,8 @@ import tempfile
 from pathlib import Path
 
 from assurance.common import Clock
-from laconic.base.paths import scene_names
 from laconic.errors import BadInput, LaconicError
-from laconic.scene import Scene, read_scene
+from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.tools.enclosure.readings import check_enclosable
 from laconic.tools.enclosure.scene_case import verify_scene_enclosed
 from laconic.tools.verify.enclosed_result import EnclosedResult, bound_text
@@ -22,7 +21,7 @@ STEPS_S = ("0.001", "0.01")
 def run(clock: Clock, seed: int) -> list[str]:
     """Every scene to its end, however long; then random vehicles until the time is up. All must be narrow."""
     source, wide, drawn = random.Random(seed), list[str](), list[EnclosedResult]()
-    for name in scene_names():
+    for name in rigid_scene_names():
         text, is_wide = of_scene(read_scene(name))
         print(f"  {name}: {text}", flush=True)
         wide += [name] if is_wide else []

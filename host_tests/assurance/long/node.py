@@ -7,12 +7,11 @@ import random
 from pathlib import Path
 
 from assurance.common import Clock
-from laconic.base.paths import scene_names
 from laconic.can.rig.boards import own_node
 from laconic.can.rig.free_judge import judge_free_run
 from laconic.can.rig.judge import judge_same_bits
 from laconic.can.rig.verdict import Judgement
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 
 LOCKSTEP_STEPS, FREE_S, RATE_HZ, MOST_GROWTH_KB = 5_000, 10.0, 1000, 1024
 OF_THE_MACHINE = ("punctuality", "clock", "envelope")  # verdicts of lateness
@@ -23,7 +22,7 @@ def run(clock: Clock, seed: int) -> list[str]:
     source, bad, memory_kb, late = random.Random(seed), list[str](), list[int](), 0.0
     with own_node("process", "double") as node:
         while len(memory_kb) < 2 or clock:
-            name, fd = source.choice(scene_names()), source.choice((False, True))
+            name, fd = source.choice(rigid_scene_names()), source.choice((False, True))
             scene = read_scene(name).with_run(real="double")
             bad += wrong(f"{name}, lockstep", judge_same_bits(node, scene, LOCKSTEP_STEPS, every=20, fd=fd))
             free = read_scene("turtlebot3_burger").with_run(step_s=1.0 / RATE_HZ, duration_s=FREE_S, real="double")

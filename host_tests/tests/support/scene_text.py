@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 
-from laconic.base.paths import scene_names
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 from laconic.scene.ground import has_friction
 
 
 def ideal_scene_names() -> list[str]:
     """Names of the project's scenes on ideal ground, whose equation is (4.7)."""
-    return [name for name in scene_names() if not has_friction(read_scene(name).vehicle)]
+    return [name for name in rigid_scene_names() if not has_friction(read_scene(name).vehicle)]
 
 
 def table(head: str, **entries: object) -> str:

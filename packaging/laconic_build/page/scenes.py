@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from laconic import read_scene
+from laconic.scene.hinges import file_has_hinges
 
 NOTHING: tuple[Any, ...] = (0, False, "", None, (), (0.0, 0.0))
 
 
 def scenes_in(folder: Path) -> list[dict[str, Any]]:
-    """Every scene, sorted by its name."""
-    found = [plain_scene(path) for path in sorted(folder.glob("*.toml"))]
+    """Every scene without hinges, which the page does not have yet, sorted by its name."""
+    found = [plain_scene(path) for path in sorted(folder.glob("*.toml")) if not file_has_hinges(path)]
     return sorted(found, key=lambda scene: (scene["id"].startswith("paper"), scene["name"].casefold()))
 
 

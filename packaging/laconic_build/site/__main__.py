@@ -9,6 +9,8 @@ from pathlib import Path
 
 from laconic_build.site.pages import stage
 
+CONFIG = Path(__file__).resolve().parents[2] / "site"  # Sphinx's conf.py, styles and scripts
+
 
 def main() -> int:
     """0, or Sphinx's exit status; a warning of Sphinx is an error."""
@@ -19,7 +21,7 @@ def main() -> int:
     from sphinx.cmd.build import main as sphinx
 
     os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # no dates in the pages
-    status = sphinx(["-q", "-W", "--keep-going", "-b", "html", "-c", str(source / "docs" / "site"),
+    status = sphinx(["-q", "-W", "--keep-going", "-b", "html", "-c", str(CONFIG),
                      "-d", str(out / "cache"), str(pages), str(html)])
     return int(status)
 

@@ -7,25 +7,21 @@ import shutil
 from pathlib import Path
 
 from laconic_build.site.c_reference import c_page
-from laconic_build.site.command_reference import command_page
-from laconic_build.site.fmi_reference import fmi_page
-from laconic_build.site.python_reference import python_page
+from laconic_build.site.references import command_page, fmi_page, python_page
 from laconic_build.site.scene_reference import scene_page
 
 PICTURES = (".png", ".svg", ".gif")
 MADE_LATER = re.compile(r"^\.|^__pycache__$|\.egg-info$|^(build|dist)\b")  # what a folder's list leaves out
-LINK = re.compile(r"(!?\[[^\]\n]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
-GROUPS = {
-    "Learn": ("tutorial",),
-    "How to": ("how-to", "import", "scenes", "python", "c", "fmu", "fmu-fmpy", "fmu-simulink", "fmu-openmodelica",
-               "fmu-dymola", "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep",
-               "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "secure", "play", "play-canopen",
-               "play-odrive", "play-robomaster", "play-moteus", "ros2", "logs", "sweep", "page", "release"),
-    "Explanation": ("performance", "soft-double", "batch", "learn", "derivatives", "control", "optimise",
-                    "assurance", "enclosures", "error-estimate", "integrators", "friction", "sensors",
-                    "real-robots", "paper", "architecture", "manual", "glossary"),
-    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
-                  "reference-fmi", "wire", "changelog"),
+LINK = re.compile(r"(!?\[[^\]]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
+GROUPS = {  # the parts of the manual, in the order in which a reader needs them
+    "Start": ("tutorial", "how-to"),
+    "Guides": ("scenes", "import", "sensors", "fmu-importers", "fmu", "fmu-network", "rig", "rig-ports",
+               "play", "play-drives", "ros2", "logs", "control", "c", "python", "sweep", "batch", "page"),
+    "Reference": ("reference-commands", "reference-scene", "signals", "reference-c", "reference-python",
+                  "reference-fmi", "wire", "glossary"),
+    "Theory": ("paper", "integrators", "friction", "accuracy"),
+    "How far it is checked": ("assurance", "performance"),
+    "For developers": ("architecture", "changelog"),
 }
 
 
@@ -37,7 +33,7 @@ def stage(source: Path, pages: Path) -> None:
               "reference-scene": scene_page(source), "reference-fmi": fmi_page(source),
               "changelog": (source / "CHANGELOG.md").read_text(encoding="utf-8")}
     for folder in (source / "docs").iterdir():
-        if folder.is_dir() and folder.name != "site":
+        if folder.is_dir():
             shutil.copytree(folder, pages / folder.name)
     for picture in (source / "docs").iterdir():
         if picture.suffix in PICTURES:
@@ -77,7 +73,7 @@ def _target(path: Path, source: Path, pages: Path) -> str:
         return "index.md"
     if path.name in ("CHANGELOG.md",):
         return "changelog.md"
-    if docs in path.parents and "site" not in path.relative_to(docs).parts:
+    if docs in path.parents:
         return str(path.relative_to(docs))
     name = path.relative_to(source)
     if path.is_file():

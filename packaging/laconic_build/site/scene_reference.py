@@ -37,7 +37,7 @@ def descriptions(source: Path) -> tuple[Mapping[str, str], Mapping[str, str]]:
 def _head(table: str) -> str:
     if not table:
         return "Top"
-    return f"`[[{table.removesuffix('[#]')}]]`" if table.endswith("[#]") else f"`[{table}]`"
+    return f"`[[{table.removesuffix('[#]')}]]`" if table.endswith("[#]") else f"`[{table.replace('[#]', '')}]`"
 
 
 def _table(of_table: Iterable[Row]) -> str:

@@ -12,15 +12,16 @@ from laconic.scene.reference import Signal, inputs, outputs
 from laconic_build.site.scene_reference import descriptions
 
 SOURCE = Path(__file__).resolve().parents[3]
-ITEMS = {"": "1", "[1|2]": "2: x, y", "[1|2|3]": "3", "[i]": "one for each wheel", "[j]": "one for each support"}
+ITEMS = {"": "1", "[1|2]": "2: x, y", "[1|2|3]": "3", "[i]": "one for each wheel", "[j]": "one for each support",
+         "[name]": "one for each hinge"}
 
 TEXT = """# Signals
 
 Names of numbers over time: columns of `laconic simulate --out`, of `Trajectory.columns` [in Python](python.md), keys
 of `[[input]]` and `[outputs]` in [a scene](scenes.md), variables of [an FMU](fmu.md). An index counts from 1:
-`voltage_V[2]`, `nu_rad_per_s[3]`. Letters and axes are in the [glossary](glossary.md). Made by
-`build/venv/bin/python -m laconic_build.site.signals_page` from the lists by which scenes are read and from
-`modelDescription.xml`; edit those.
+`voltage_V[2]`, `nu_rad_per_s[3]`. A hinge has its body's name: `hinge_angle_rad[front]`. Letters and axes are in the
+[glossary](glossary.md). Made by `build/venv/bin/python -m laconic_build.site.signals_page` from the lists by which
+scenes are read and from `modelDescription.xml`; edit those.
 
 ## Inputs
 

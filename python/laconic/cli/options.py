@@ -33,15 +33,27 @@ class InputPath(click.ParamType[Path]):
 
 
 class SceneName(click.ParamType[str]):
-    """A scene by its path or by its name; it stays as it was given, for `read_scene`."""
+    """A scene by its path or by its name; it stays as it was given, for `read_scene`.
+
+    One with bodies on hinges is refused unless the command takes them.
+    """
 
     name = "scene"
+
+    def __init__(self, hinges: bool = False):
+        self.takes_hinges = hinges
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The name; its file is noted as an input."""
         _path(value, param)
         if path := named_scene(value):
             outputs.claims(ctx).read(path)
+            from laconic.scene.hinges import file_has_hinges  # loads the core
+
+            if not self.takes_hinges and file_has_hinges(path):
+                command = f"laconic {ctx.info_name}" if ctx and ctx.info_name else "this"
+                raise BadInput(f"{path}: {command} does not take vehicles with hinges (steered wheels, casters, "
+                               "trailers) yet; use laconic simulate")
         return value
 
 

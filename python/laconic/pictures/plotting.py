@@ -17,6 +17,7 @@ from laconic.base.outputs import check_ending, check_file, whole_file
 from laconic.base.paths import as_path
 from laconic.core.given import shown
 from laconic.errors import BadInput
+from laconic.pictures.articulated import is_drawn, plot_hinges, plot_vehicle_path
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_beside_yaw_rate, plot_curves, plot_rows
 from laconic.pictures.method_style import style_of
@@ -196,9 +197,10 @@ def run_figure(run: Trajectory) -> Figure:
     """Path, velocities and wheel speeds of one run, what its sensors show, and where the ground could not give what it
     needs."""
     sensors = sensor_panels(run)
-    picture = figure(12.0, 7.0 + 3.5 * len(sensors))
+    hinges = ["hinges"] if run.scene.has_hinges else []
+    picture = figure(12.0, 7.0 + 3.5 * len(sensors) + 2.5 * len(hinges))
     below = "wheels" if run.scene.wheel_count else "velocities"
-    rows = ["velocities", below, *sensors]
+    rows = ["velocities", *hinges, below, *sensors]
     panels = picture.subplot_mosaic([["path", row] for row in rows], width_ratios=(1.0, 1.25))
     title(picture, f"{run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
     plot_velocities(panels["velocities"], run)
@@ -207,7 +209,12 @@ def run_figure(run: Trajectory) -> Figure:
     for panel in sensors:
         plot_sensors(panel, panels[panel], run)
     mark_ground(panels, run)
-    plot_path(panels["path"], run)
+    if hinges:
+        plot_hinges(panels["hinges"], run)
+    if hinges and is_drawn(run):
+        plot_vehicle_path(panels["path"], run)
+    else:
+        plot_path(panels["path"], run)
     return picture
 
 

@@ -17,7 +17,7 @@ from laconic.scene.reference import KINDS, path_of, scene_fields
 
 EVERY = 0  # an item `[*]`
 PART = re.compile(r"(\w+)(?:\[(\*|\d{1,9})\])?")
-SEVERAL = ("vehicle.wheel", "vehicle.support", "input")
+SEVERAL = ("vehicle.wheel", "vehicle.caster", "vehicle.trailer", "vehicle.body", "vehicle.support", "input")
 """Tables of which there are several."""
 
 

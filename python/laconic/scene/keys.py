@@ -70,15 +70,37 @@ MOTOR_CIRCUITS = {  # laconic_motor_circuit
 PROTOCOLS = {  # of drives, numbered from 1 on the wire
     "canopen": "CiA 301 and 402", "odrive": "ODrive CANSimple", "robomaster": "C620", "moteus": "moteus, CAN FD",
     "robomaster-c610": "C610"}
+STEERING = {
+    "coordinated": "all such wheels point along one commanded motion of the vehicle, `steering_twist`",
+    "prescribed": "its rate or angle is an input, whatever torque that takes",
+    "motor": "a motor with a voltage turns it"}
+HINGES = {
+    "free": "turns freely, with damping and a spring", "motor": "the same, and a motor with a voltage",
+    "prescribed": STEERING["prescribed"], "coordinated": STEERING["coordinated"]}
+AT_LIMITS = {
+    "saturate": "the command is followed as far as the limit allows, and the run reports when and for how long",
+    "refuse": "the run ends there"}
 REALS = {"double": "64 bits", "single": "32 bits, as on a microcontroller"}
 
 TABLES = {
     "": "At the top of the file.",
-    "vehicle": "Totals of the robot with its wheels, without payload, about its centre of mass. Must be given.",
+    "vehicle": "Totals of the robot with its wheels, without payload, about its centre of mass. Must be given. Once "
+               "there are bodies on hinges (steered wheels, casters, trailers), mass, inertia, centre of mass and the "
+               "start's place are those of the carriage alone, with the wheels that are fastened to it.",
     "vehicle.motor": "The motor at its shaft, before the gear; instead of `motor_gain_Nm_per_V` and "
                      "`motor_damping_Nms`.",
     "vehicle.drive": "Limits of these motors and their supply; needs `[vehicle.motor]`.",
     "vehicle.wheel[#]": "One for each wheel, numbered from 1. Without any, the vehicle is a sliding puck.",
+    "vehicle.wheel[#].steering_motor": "The motor that steers a wheel with `steered = \"motor\"`, at its shaft; "
+                                       "instead of `steering_gain_Nm_per_V` and `steering_damping_Nms`.",
+    "vehicle.caster[#]": "One for each swivel caster. Its wheels are numbered after those of `[[vehicle.wheel]]`.",
+    "vehicle.trailer[#]": "One for each trailer with one axle of two wheels, which are numbered after those of the "
+                          "casters: left, right.",
+    "vehicle.body[#]": "One for each other body on a vertical hinge; its wheels are `[[vehicle.wheel]]` with its name "
+                       "as `body`. Its frame has its origin at the hinge and lies along the parent's at the hinge "
+                       "angle 0.",
+    "vehicle.body[#].motor": "The motor of a hinge with `hinge = \"motor\"`, at its shaft; instead of "
+                             "`gain_Nm_per_V` and `damping_Nms`.",
     "vehicle.support[#]": "One for each ball caster: it carries a normal load, nothing else.",
     "vehicle.payload": "A mass fastened to the body.",
     "ground": "Friction or a slope; without it the ground is level and holds every wheel.",
@@ -122,7 +144,105 @@ DRIVE_NUMBERS = (
     _drive("stall_time_s", NOT_NEGATIVE, "So long at the current limit without motion is a fault; 0: none"))
 """Numbers of each drive at the motor's shaft, as laconic_drive_settings has them."""
 
-OWN = "vehicle.wheel[#]"
+OWN, CASTER, TRAILER, BODY = "vehicle.wheel[#]", "vehicle.caster[#]", "vehicle.trailer[#]", "vehicle.body[#]"
+CARRIAGE = "the carriage"
+
+
+def _limits(table: str, whose: str) -> tuple[Key, ...]:
+    """Of each hinge: where it ends, and what happens there."""
+    return (
+        Key(f"{table}.stop_low_rad", A_NUMBER, f"Least angle of {whose}", None, "no limit"),
+        Key(f"{table}.stop_high_rad", A_NUMBER, f"Largest angle of {whose}", None, "no limit"),
+        Key(f"{table}.start_angle_rad", A_NUMBER, f"Angle of {whose} at the start; of a coordinated hinge only its "
+            "whole turns count", 0.0),
+        Key(f"{table}.start_rate_rad_per_s", A_NUMBER, f"Rate of {whose} at the start, where no wheel or input sets it",
+            0.0))
+
+
+def _commanded(table: str) -> tuple[Key, ...]:
+    """Of a hinge that follows a command."""
+    return (
+        Key(f"{table}.rate_limit_rad_per_s", A_NUMBER, "Largest rate of a prescribed or coordinated hinge; needed to "
+            "follow `steering_angle_rad`", None, "no limit", POSITIVE),
+        Key(f"{table}.at_limit", TEXT, "What a limit of angle or rate does; a free or motor hinge at its stop always "
+            "ends the run", None, "`saturate` for a hinge that is commanded", choices=AT_LIMITS))
+
+
+def _shaft(table: str) -> tuple[Key, ...]:
+    """A motor of a hinge at its shaft."""
+    return (
+        Key(f"{table}.resistance_ohm", A_NUMBER, "Of the winding", rule=POSITIVE),
+        Key(f"{table}.torque_constant_Nm_per_A", A_NUMBER, "Torque of the shaft per ampere", rule=POSITIVE),
+        Key(f"{table}.back_emf_Vs_per_rad", A_NUMBER, "Voltage per speed of the shaft", rule=NOT_NEGATIVE),
+        Key(f"{table}.gear_ratio", A_NUMBER, "Turns of the shaft for one of the hinge; below 0: mounted the other way",
+            rule=NOT_ZERO),
+        Key(f"{table}.viscous_friction_Nms", A_NUMBER, "Torque per speed of the shaft", 0.0, rule=NOT_NEGATIVE),
+        Key(f"{table}.rotor_inertia_kgm2", A_NUMBER, "Of the rotor; added, times the square of the gear ratio, to the "
+            "yaw inertia of what it turns", 0.0, rule=NOT_NEGATIVE))
+
+
+def _spelled(table: str, what: str, mass: str, com: str) -> tuple[Key, ...]:
+    """Name, parent, mass and inertia of a caster or trailer."""
+    return (
+        Key(f"{table}.name", TEXT, "In the names of signals: `hinge_angle_rad[name]`", None,
+            f"`{what}_1`, counted up"),
+        Key(f"{table}.parent", TEXT, "Name of the body that it hangs on", None, CARRIAGE),
+        Key(f"{table}.mass_kg", A_NUMBER, mass, 0.0, rule=NOT_NEGATIVE),
+        Key(f"{table}.yaw_inertia_kgm2", A_NUMBER, "About the vertical through its own centre of mass", 0.0,
+            rule=NOT_NEGATIVE),
+        Key(f"{table}.com_x_m", A_NUMBER, com, None, "over its axle"),
+        Key(f"{table}.radius_m", A_NUMBER, "Of its wheels", rule=POSITIVE),
+        Key(f"{table}.wheel_inertia_kgm2", A_NUMBER, "Of each wheel about its axle", 0.0, rule=NOT_NEGATIVE),
+        Key(f"{table}.damping_Nms", A_NUMBER, "Of its hinge: torque per rate", 0.0, rule=NOT_NEGATIVE))
+
+
+HINGE_KEYS = (
+    Key(f"{OWN}.body", TEXT, "Name of the body that carries the wheel; its place is then in that body's frame", None,
+        CARRIAGE),
+    Key(f"{OWN}.steered", TEXT, "What turns the wheel about a vertical axis, whose place is then `x_m` and `y_m`; such "
+        'a wheel is "fixed", and at the angle 0 it rolls forward if `axle_rad` is not given', None, "not steered",
+        choices=STEERING),
+    Key(f"{OWN}.name", TEXT, "Of a steered wheel, in the names of signals: `hinge_angle_rad[name]`", None,
+        "`wheel_1`, by its number"),
+    Key(f"{OWN}.scrub_m", A_NUMBER, "Distance of a steered wheel to the left of its steering axis", 0.0),
+    Key(f"{OWN}.mass_kg", A_NUMBER, "Of all that turns about the steering axis; its centre of mass lies on the axis",
+        0.0, rule=NOT_NEGATIVE),
+    Key(f"{OWN}.yaw_inertia_kgm2", A_NUMBER, "Of all that turns about the steering axis", 0.0, rule=NOT_NEGATIVE),
+    Key(f"{OWN}.steering_gain_Nm_per_V", A_NUMBER, "Torque about the steering axis per volt of its motor", 0.0),
+    Key(f"{OWN}.steering_damping_Nms", A_NUMBER, "Torque about the steering axis per rate", 0.0, rule=NOT_NEGATIVE),
+    *_limits(OWN, "a steered wheel"), *_commanded(OWN), *_shaft(f"{OWN}.steering_motor"),
+    *_spelled(CASTER, "caster", "Of fork and wheels", "Its centre of mass ahead of the swivel axis"),
+    Key(f"{CASTER}.x_m", A_NUMBER, "Of the swivel axis, in the parent's frame"),
+    Key(f"{CASTER}.y_m", A_NUMBER, "Of the swivel axis, in the parent's frame"),
+    Key(f"{CASTER}.trail_m", A_NUMBER, "How far the wheel's axle lies behind the swivel axis", rule=POSITIVE),
+    Key(f"{CASTER}.offset_m", A_NUMBER, "Distance of the wheel, or the middle of two, to the left of the swivel axis",
+        0.0),
+    Key(f"{CASTER}.twin_m", A_NUMBER, "Distance of two twin wheels from each other", None, "one wheel", POSITIVE),
+    Key(f"{CASTER}.driven", "true or false", "Whether its wheels have the vehicle's motor", None, "false"),
+    *_limits(CASTER, "the swivel"),
+    *_spelled(TRAILER, "trailer", "Of the trailer with its wheels", "Its centre of mass ahead of the hitch"),
+    Key(f"{TRAILER}.hitch_x_m", A_NUMBER, "Of the hitch, in the parent's frame: for a parent that is a trailer, from "
+        "its own hitch"),
+    Key(f"{TRAILER}.hitch_y_m", A_NUMBER, "Of the hitch, in the parent's frame", 0.0),
+    Key(f"{TRAILER}.length_m", A_NUMBER, "From the hitch back to the axle", rule=POSITIVE),
+    Key(f"{TRAILER}.track_m", A_NUMBER, "Distance of its two wheels", rule=POSITIVE),
+    *_limits(TRAILER, "the trailer against its parent"),
+    Key(f"{BODY}.name", TEXT, "In the names of signals, and for `body` and `parent`"),
+    Key(f"{BODY}.parent", TEXT, "Name of the body that it hangs on", None, CARRIAGE),
+    Key(f"{BODY}.hinge", TEXT, "What turns it", choices=HINGES),
+    Key(f"{BODY}.hinge_x_m", A_NUMBER, "Of the hinge, in the parent's frame"),
+    Key(f"{BODY}.hinge_y_m", A_NUMBER, "Of the hinge, in the parent's frame", 0.0),
+    Key(f"{BODY}.mass_kg", A_NUMBER, "Of the body with its wheels", rule=NOT_NEGATIVE),
+    Key(f"{BODY}.yaw_inertia_kgm2", A_NUMBER, "About the vertical through its own centre of mass", rule=NOT_NEGATIVE),
+    Key(f"{BODY}.com_x_m", A_NUMBER, "Centre of mass, in the body's frame", 0.0),
+    Key(f"{BODY}.com_y_m", A_NUMBER, "Centre of mass, in the body's frame", 0.0),
+    Key(f"{BODY}.damping_Nms", A_NUMBER, "Of a free or motor hinge: torque per rate", 0.0, rule=NOT_NEGATIVE),
+    Key(f"{BODY}.stiffness_Nm", A_NUMBER, "Of a free or motor hinge: torque per radian", 0.0, rule=NOT_NEGATIVE),
+    Key(f"{BODY}.rest_rad", A_NUMBER, "Angle at which that spring is relaxed", 0.0),
+    Key(f"{BODY}.gain_Nm_per_V", A_NUMBER, "Torque of a motor hinge per volt", 0.0),
+    *_limits(BODY, "the hinge"), *_commanded(BODY), *_shaft(f"{BODY}.motor"))
+"""Keys of bodies on hinges, which the core's list of scene fields does not have."""
+
 KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("name", TEXT, "Of the scene, in pictures and tables", None, "the file's name"),
     Key("source", TEXT, "Where its numbers come from", ""),
@@ -166,7 +286,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("input[#].phase_rad", A_NUMBER, "Of a `sine`", 0.0),
     Key("run.duration_s", A_NUMBER, "Length of the run, a whole number of steps", rule=POSITIVE),
     Key("run.step_s", A_NUMBER, 'Internal step, or "auto" with `tolerance`: [found before the run]'
-        "(error-estimate.md#a-step-for-a-tolerance)", rule=POSITIVE),
+        "(accuracy.md#a-step-for-a-tolerance)", rule=POSITIVE),
     Key("run.tolerance", A_NUMBER, 'For step_s = "auto": the largest estimated error that ν, place, heading and wheel '
         "angles may have in the run, in rad/s, m and rad", None, "a step that is given", POSITIVE),
     Key("run.method", TEXT, "See [which method](performance.md#which-method)", "auto"),
@@ -215,7 +335,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("rig.drives.protocol", TEXT, "What the drives speak", None, "that of `--drives`", choices=PROTOCOLS),
     Key("rig.drives.node_ids", "list of whole numbers", "One for each wheel, `false` for a wheel without a drive", None,
         "counted up"),
-    *DRIVE_NUMBERS,
+    *DRIVE_NUMBERS, *HINGE_KEYS,
     Key("rig.drives.watchdog_s", A_NUMBER, "Off after so long a silence; not with CANopen", None, "the protocol's",
         SECONDS))}
 

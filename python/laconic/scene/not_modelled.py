@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-SUPPORT = ("a caster carries a normal load, nothing else, in this model: give it as [[vehicle.support]] with its x_m "
-           "and y_m, and its mass within vehicle.mass_kg")
-STEERED = ("wheels that are steered in motion are not modelled; for a constant steering angle give a \"fixed\" wheel "
-           "with its axle at that angle (axle_deg), see docs/scenes.md")
+SUPPORT = ("a swivel caster is a table [[vehicle.caster]]; a ball caster carries a normal load, nothing else: give it "
+           "as [[vehicle.support]] with its x_m and y_m, and its mass within vehicle.mass_kg")
+STEERED = ("a steered wheel is \"fixed\" with steered = \"coordinated\", \"prescribed\" or \"motor\"; a constant angle "
+           "is axle_deg")
+TRAILER = "a trailer is a table [[vehicle.trailer]], any other body on a hinge a table [[vehicle.body]]"
+DRY = ("hinges have damping_Nms, and no dry friction yet; a servo is a \"prescribed\" hinge that follows "
+       "steering_angle_rad within its rate_limit_rad_per_s")
 SKID = ("skid steering and tracks turn by slip: give \"fixed\" wheels and [ground] friction_coefficient; or on ideal "
         "ground one \"fixed\" wheel a side, at the track width that measured turns show, see docs/scenes.md")
 RADIUS = "vehicle.wheel_radius_m is the radius of all wheels but those that give their own radius_m"
@@ -24,6 +27,8 @@ OF_WHEELS = {
     "caster castor swivel ball": SUPPORT,
     "idler passive undriven": IDLER,
     "steer ackermann": STEERED,
+    "trailer hitch hinge": TRAILER,
+    "servo dry_": DRY,
     "skid track crawler": SKID,
     "radius diameter": RADIUS,
     "motor gain damping gear resistance inertia": MOTOR,

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from laconic.core import Field, load
+from laconic.core.articulated import method_names
 from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
@@ -16,6 +17,14 @@ from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground
+from laconic.scene.hinge_signals import (
+    check_commands,
+    check_hinge_signal,
+    input_signals,
+    output_signals_of,
+    read_hinge_signals,
+)
+from laconic.scene.hinges import ROLLS_FORWARD_RAD, SHORT_FORMS, Hung, check_not_steered, has_hinges, read_hinges
 from laconic.scene.inputs import Input
 from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
@@ -35,7 +44,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     if len(parts["name"]) > LONGEST_NAME:
         top.fail("name", f"has {len(parts['name'])} letters; give at most {LONGEST_NAME}, and what else there is to "
                  "say as source")
-    parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
+    parts["vehicle"], hung = read_vehicle(top.table("vehicle", required=True))
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))
     check_friction(top, parts["vehicle"])
@@ -44,6 +53,8 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     wheel_count = len(parts["vehicle"]["wheel"])
     parts["initial"] = read_initial(top.table("initial"), wheel_count)
     check_start(top, parts["initial"], parts["vehicle"])
+    if hung is not None:
+        return read_parts_with_hinges(top, parts, hung, reals)
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
     check_places(top, parts["inputs"])
@@ -59,16 +70,72 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     return parts
 
 
-def read_vehicle(table: Table) -> dict[str, Any]:
-    """`[vehicle]` with the keys of laconic_vehicle; `motor` stays apart for laconic_motor_fit."""
+def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals: Sequence[str]) -> dict[str, Any]:
+    """The rest of a scene whose vehicle has bodies on hinges: other signals, other methods, no sensors."""
+    vehicle, hinges = parts["vehicle"], hung.hinges
+    check_ideal(top, vehicle, hung.wheel_places)
+    known = {signal: name for name, of_name in input_signals(vehicle, hinges).items() for signal in of_name}
+    parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known) for each in top.tables("input")]
+    parts["run"] = read_run(top.table("run", required=True), method_names(), reals)
+    if parts["run"].get("tolerance") is not None:
+        top.fail("run.step_s", '"auto" is not found for vehicles with hinges yet; give a step in seconds, such as '
+                 "0.001")
+    check_places(top, parts["inputs"])
+    for each in parts["inputs"]:
+        check_input(top, each, vehicle, parts["run"]["duration_s"])
+    check_commands(top, parts["inputs"], hinges)
+    check_start_with_hinges(top, parts["initial"])
+    if top.has("sensors"):
+        top.fail("sensors", "are not simulated for vehicles with hinges yet; take the table out")
+    outputs = top.table("outputs")
+    signals = read_hinge_signals(outputs, output_signals_of(vehicle, hinges))
+    parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
+    if top.has("base"):
+        top.fail("base", "is for laconic ros2, which does not take vehicles with hinges yet; take the table out")
+    parts["sensors"], parts["base"] = NO_SENSORS, None
+    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"])
+    top.done()
+    return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
+
+
+def check_ideal(top: Table, vehicle: Mapping[str, Any], wheel_places: Sequence[str]) -> None:
+    """Fails for ground friction and limits of drives, which do not act on vehicles with hinges yet."""
+    remedy = "does not act on vehicles with hinges yet; take it out for a ground that holds every wheel"
+    for key in vehicle.get("ground", {}):
+        if not key.startswith("slope_"):
+            top.fail(f"ground.{key}", f"{remedy}, and give vehicle.friction_coefficient to see where it would not")
+    if "drive" in vehicle:
+        top.fail("vehicle.drive", "limits no drive of a vehicle with hinges yet; take it out")
+    for place, wheel in zip(wheel_places, vehicle["wheel"], strict=True):
+        if wheel.get("motor_circuit"):
+            top.fail(f"{place}.motor_circuit", f"{remedy.partition(';')[0]}; take it out")
+
+
+def check_start_with_hinges(top: Table, initial: Mapping[str, Any]) -> None:
+    """Fails for starts in numbers that a vehicle with hinges does not have."""
+    if "nu_rad_per_s" in initial:
+        top.fail("initial.nu_rad_per_s", "is not a start of a vehicle with hinges; give velocity_body_m_per_s and "
+                 "yaw_rate_rad_per_s")
+    if "wheel_speed_rad_per_s" in initial:
+        top.fail("initial.wheel_speed_rad_per_s", "follows from the motion, as wheels roll without slip on "
+                 "hinges; take it out")
+
+
+def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:
+    """`[vehicle]` with the keys of laconic_vehicle; `motor` stays apart for laconic_motor_fit. With bodies on hinges
+    also those, and what the core does not know of them."""
     fields = load().fields_of("vehicle")
     table.expect(field.key for field in fields)
     vehicle: dict[str, Any] = {field.key: read_field(table, field) for field in fields if field.need == "ALWAYS"}
     vehicle |= {field.key: read_field(table, field, 0.0) for field in fields if field.need == "NEVER"}
     if table.has("friction_coefficient"):
         key_of(table, "friction_coefficient").check(table, vehicle["friction_coefficient"])
-    vehicle["wheel"] = [read_wheel(each) for each in table.tables("wheel")]
+    wheels = [(each, read_wheel(each)) for each in table.tables("wheel")]
+    vehicle["wheel"] = [wheel for _, wheel in wheels]
     needed = ... if vehicle["wheel"] else 0.0
+    hung = read_hinges(table, wheels) if has_hinges(table.plain()) else None
+    if hung is not None:
+        vehicle |= {"wheel": hung.wheels, "body": hung.bodies}
     vehicle |= {field.key: read_field(table, field, needed) for field in fields if field.need == "WITH_WHEELS"}
     vehicle |= read_motor(table, [field for field in fields if field.need == "WITH_MOTOR"])
     if table.has("drive"):
@@ -76,8 +143,10 @@ def read_vehicle(table: Table) -> dict[str, Any]:
     vehicle["support"] = [read_point(each) for each in table.tables("support")]
     if table.has("payload"):
         vehicle["payload"] = read_all(table.table("payload"), load().fields_of("vehicle.payload"))
+    for form in SHORT_FORMS:
+        table.has(form)
     table.done(OF_VEHICLES)
-    return vehicle
+    return vehicle, hung
 
 
 def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
@@ -101,9 +170,12 @@ def read_wheel(table: Table) -> dict[str, Any]:
     """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
     kind = read_choice(table, "kind", hints=KINDS_OF_WHEELS)
     wheel: dict[str, Any] = {"kind": kind, **read_position(table)}
+    steered, body = read_choice(table, "steered"), table.text("body", None)
     fields = {field.key: field for field in load().fields_of("vehicle.wheel[#]") if field.key not in wheel}
     roller = fields.pop("roller_rad")
-    wheel |= {key: read_field(table, field) for key, field in fields.items() if field.need == "EACH_WHEEL"}
+    straight = {"axle_rad": ROLLS_FORWARD_RAD} if steered else {}
+    wheel |= {key: read_field(table, field, straight.get(key, ...)) for key, field in fields.items()
+              if field.need == "EACH_WHEEL"}
     if kind != "fixed":
         wheel["roller_rad"] = read_field(table, roller, math.pi / 2 if kind == "omni" else ...)
     usual = {"locked": False, "driven": True}
@@ -111,7 +183,11 @@ def read_wheel(table: Table) -> dict[str, Any]:
     wheel["motor_circuit"] = read_circuit(table)
     wheel |= read_own(table, [field for field in fields.values() if field.is_own])
     check_wheel(table, wheel)
-    table.done(OF_WHEELS)
+    wheel |= {"steered": steered} if steered else {}
+    wheel |= {"body": body} if body is not None else {}
+    if not steered:
+        check_not_steered(table)
+        table.done(OF_WHEELS)
     return wheel
 
 
@@ -172,10 +248,13 @@ def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], p
     table.fail(key, f"there is no signal {shown(signal)}; {nearest_of(signal, known)}")
 
 
-def read_input(table: Table, wheel_count: int) -> Input:
-    """One `[[input]]`."""
+def read_input(table: Table, wheel_count: int, known: Mapping[str, str] | None = None) -> Input:
+    """One `[[input]]`; `known`: the signals of a vehicle with hinges."""
     signal, kind = table.text("signal"), read_choice(table, "kind")
-    check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
+    if known is None:
+        check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
+    else:
+        check_hinge_signal(table, "signal", signal, known)
     if kind == "sine":
         phase = table.angle("phase", 0.0)
         found = Input(signal, kind, table.location, amplitude=read_number(table, "amplitude"),
@@ -231,6 +310,11 @@ def read_outputs(table: Table, vehicle: dict[str, Any], sensors: SensorTables, d
     """`[outputs]`: a signal without its index stands for all of them."""
     wheel_count = len(vehicle["wheel"])
     signals = read_signals(table, *output_signals(vehicle), wheel_count, missing_outputs(vehicle, sensors))
+    return read_interval(table, signals, duration_s)
+
+
+def read_interval(table: Table, signals: tuple[str, ...], duration_s: float) -> dict[str, Any]:
+    """The rest of `[outputs]`, whose `signals` were read."""
     every = read_number(table, "every_s")
     if every is not None and every > duration_s * (1.0 + 1e-12):
         table.fail("every_s", f"{every:g} s is longer than the run of {duration_s:g} s; give that or less")

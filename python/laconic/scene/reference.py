@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from laconic.core import Field, load
 from laconic.core.fields import ITEM, OF_GROUND
+from laconic.scene.hinge_signals import HINGE_INPUTS, HINGE_OUTPUTS
 from laconic.scene.keys import A_NUMBER, KEYS, TABLES, Key
 from laconic.scene.sensors import DELAY, OF_ENCODERS, OF_IMU
 from laconic.scene.signals import (
@@ -58,7 +59,8 @@ class Row:
 
 @dataclass(frozen=True)
 class Signal:
-    """One input or output; items: "" for one number, "[1|2]", "[i]", one for each wheel, or "[j]", for each support."""
+    """One input or output; items: "" for one number, "[1|2]", "[i]", one for each wheel, "[j]", for each support, or
+    "[name]", for each hinge."""
 
     name: str
     items: str
@@ -149,7 +151,9 @@ def _in_file(text: str, field: Field) -> str:
 
 def inputs(words: Mapping[str, str]) -> list[Signal]:
     """What an `[[input]]` may set."""
-    return _signals({**dict.fromkeys(PER_WHEEL, -1), **LENGTHS}, words)
+    of_hinges = [Signal(name, items, unit_of(name), meaning, needs)
+                 for name, (items, meaning, needs) in HINGE_INPUTS.items()]
+    return _signals({**dict.fromkeys(PER_WHEEL, -1), **LENGTHS}, words) + of_hinges
 
 
 def outputs(words: Mapping[str, str]) -> list[Signal]:
@@ -157,7 +161,9 @@ def outputs(words: Mapping[str, str]) -> list[Signal]:
     friction = {**dict.fromkeys(FRICTION_PER_WHEEL, -1), **FRICTION_LENGTHS}
     every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), **friction, **OF_IMU,
              **dict.fromkeys(OF_ENCODERS, -1), WHEEL_LOAD: -1, SUPPORT_LOAD: -2}
-    return _signals(every, words)
+    of_hinges = [Signal(name, "[name]", unit_of(name), meaning, "bodies on hinges")
+                 for name, meaning in HINGE_OUTPUTS.items()]
+    return _signals(every, words) + of_hinges
 
 
 def _signals(lengths: Mapping[str, int], words: Mapping[str, str]) -> list[Signal]:

@@ -13,12 +13,14 @@ from typing import Any
 
 from laconic.base.paths import scene_path
 from laconic.core import REALS, Core, load
+from laconic.core.articulated import ArticulatedVehicle, max_bodies, method_names
 from laconic.core.given import shown
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
 from laconic.errors import BadInput, Refused
 from laconic.scene.base import BaseTable
 from laconic.scene.drives import Drives
+from laconic.scene.hinges import Hinge, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.methods import METHODS
 from laconic.scene.names import in_file
@@ -28,6 +30,7 @@ from laconic.scene.speed_controller import SpeedController
 from laconic.scene.step_choice import AUTO, chosen_step_s
 from laconic.scene.table import Table, plain, read_toml
 
+NOUNS = {"body": "bodies on hinges", "wheel": "wheels", "support": "supports"}
 MOST_STEPS = 9e15  # as laconic_steps_in
 
 
@@ -108,6 +111,13 @@ class Scene:
     sensors: SensorTables = NO_SENSORS
     base: BaseTable | None = None
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
+    hinges: tuple[Hinge, ...] = ()  # of bodies besides the carriage, in the order of vehicle["body"]
+    wheel_places: tuple[str, ...] = ()  # with hinges: the table of each wheel in the file
+
+    @property
+    def has_hinges(self) -> bool:
+        """Whether bodies hang on hinges: steered wheels, casters, trailers. Few functions take such a scene yet."""
+        return bool(self.hinges)
 
     @property
     def wheel_count(self) -> int:
@@ -122,7 +132,8 @@ class Scene:
         tolerance = entries.pop("tolerance")
         if tolerance is not None and step_s is None:
             entries |= {"step_s": AUTO, "tolerance": tolerance}
-        run = Run(**read_run(Table(self.path, "run", entries), METHODS, REALS))
+        methods = method_names() if self.has_hinges else METHODS
+        run = Run(**read_run(Table(self.path, "run", entries), methods, REALS))
         return with_found_step(replace(self, run=run))
 
     def with_step(self, step_s: float) -> Scene:
@@ -134,7 +145,8 @@ class Scene:
         return load(self.run.real)
 
     def c_vehicle(self, core: Core) -> Any:
-        """The checked laconic_vehicle, its motor fitted."""
+        """The checked laconic_vehicle, its motor fitted; BadInput for a scene with hinges."""
+        check_without_hinges(self, "this")
         for what, limit in (("wheel", core.max_wheels), ("support", core.max_supports)):
             if len(self.vehicle[what]) > limit:
                 raise BadInput(f"{self.path}: vehicle.{what}: {len(self.vehicle[what])} of them, this build of the "
@@ -172,6 +184,20 @@ class Scene:
                 raise start.refusal(refused, model).at(self.path) from None
             raise self.refusal_in_file(refused) from None
 
+    def articulated_vehicle(self, core: Core) -> ArticulatedVehicle:
+        """The checked vehicle of a scene with hinges."""
+        limits = (("body", max_bodies(core)), ("wheel", core.max_wheels), ("support", core.max_supports))
+        for what, limit in limits:
+            if len(self.vehicle[what]) > limit:
+                raise BadInput(f"{self.path}: vehicle: has {len(self.vehicle[what])} {NOUNS[what]}, this build of the "
+                               f"core has room for {limit}; take some out")
+        try:
+            return ArticulatedVehicle(self.vehicle, core.real)
+        except Refused as refused:
+            raise self.refusal_in_file(refused) from None
+        except BadInput as bad:
+            raise BadInput(f"{self.path}: {bad}") from None
+
     def delay_steps(self, core: Core) -> int:
         """The IMU's delay in steps of the scene."""
         delay_s = (self.sensors.imu or {}).get(DELAY_S, 0.0)
@@ -193,6 +219,8 @@ class Scene:
         """A refusal of the core with this file in front, by the names that the file has."""
         if refused.status == "overflow" and not refused.field:
             refused = refused.at("vehicle")  # of its numbers together
+        if self.has_hinges:
+            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places)
         return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
 
     def steps(self) -> int:
@@ -226,6 +254,13 @@ class Scene:
         return InputsOnGrid.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
 
 
+def check_without_hinges(scene: Scene, command: str) -> None:
+    """BadInput where something that knows rigid vehicles alone gets one with hinges."""
+    if scene.has_hinges:
+        raise BadInput(f"{scene.path}: {scene.hinges[0].place}: {command} does not take vehicles with hinges yet; use "
+                       "laconic simulate")
+
+
 def check_scene(given: Any) -> Scene:
     """A scene as it is; BadInput for a path, a name or anything else."""
     if not isinstance(given, Scene):
@@ -245,7 +280,8 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], base=parts["base"], in_degrees=parts["in_degrees"]))
+        sensors=parts["sensors"], base=parts.get("base"), in_degrees=parts["in_degrees"],
+        hinges=parts.get("hinges", ()), wheel_places=parts.get("wheel_places", ())))
 
 
 def with_found_step(scene: Scene) -> Scene:

@@ -18,6 +18,8 @@ from laconic.core.recording import Recorder, needs_sensors
 from laconic.errors import BadInput, Refused, nearest_of
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import slips
+from laconic.scene.hinge_signals import input_signals as input_signals_of
+from laconic.scene.hinge_signals import output_signals_of
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.reader import read_signals
 from laconic.scene.sensors import OF_ENCODERS, OF_IMU, missing_sensors
@@ -31,6 +33,13 @@ from laconic.scene.signals import (
     signal_names,
 )
 from laconic.scene.table import Table
+from laconic.simulation.articulated import (
+    input_signals_with_hinges,
+    kept_signals_with_hinges,
+    run_with_hinges,
+    usual_signals_with_hinges,
+)
+from laconic.simulation.steering import Limited
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
@@ -52,6 +61,8 @@ class Trajectory:
     refused: Refused | None = None  # what ended it before its time
     errors: Errors | None = None  # at its end; None: the estimate was not asked for
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
+    limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
+    least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
 
     def __repr__(self) -> str:
         """In one line: its arrays have thousands of numbers."""
@@ -66,8 +77,12 @@ class Trajectory:
         found = [column for signal, column in self.columns.items() if name in (signal, signal.partition("[")[0])]
         if found:
             return np.column_stack(found)
-        lengths, per_wheel = output_signals(self.scene.vehicle)
-        known = [*lengths, *per_wheel, *LENGTHS, *PER_WHEEL]
+        if self.scene.has_hinges:
+            known = [*output_signals_of(self.scene.vehicle, self.scene.hinges),
+                     *input_signals_of(self.scene.vehicle, self.scene.hinges)]
+        else:
+            lengths, per_wheel = output_signals(self.scene.vehicle)
+            known = [*lengths, *per_wheel, *LENGTHS, *PER_WHEEL]
         if name.partition("[")[0] in known:
             raise BadInput(f"{name}: this run did not keep it; give simulate its name in signals")
         raise BadInput(f"{name}: there is no such signal; {nearest_of(name, known)}")
@@ -91,6 +106,8 @@ def wanted_signals(scene: Scene) -> tuple[str, ...]:
 
 def usual_signals(scene: Scene) -> tuple[str, ...]:
     """Velocities, pose, wheels and energy; then what the scene's sensors show."""
+    if scene.has_hinges:
+        return usual_signals_with_hinges(scene)
     every = signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, scene.wheel_count)
     by_name: dict[str, list[str]] = {name: [] for name in USUAL}
     for signal in every:
@@ -107,6 +124,8 @@ def sensor_signals(scene: Scene) -> tuple[str, ...]:
 
 def input_signals(scene: Scene) -> tuple[str, ...]:
     """Every element of the inputs that the scene uses; the voltages where it uses none."""
+    if scene.has_hinges:
+        return input_signals_with_hinges(scene)
     used = dict.fromkeys(each.signal.partition("[")[0] for each in scene.inputs) or {"voltage_V": None}
     every = signal_names(LENGTHS, PER_WHEEL, scene.wheel_count)
     return tuple(signal for signal in every if signal.partition("[")[0] in used)
@@ -115,6 +134,8 @@ def input_signals(scene: Scene) -> tuple[str, ...]:
 def is_watched(scene: Scene) -> bool:
     """Whether the ground is checked: the scene gives its friction, or the height of the centre of mass."""
     vehicle = scene.vehicle
+    if scene.has_hinges:
+        return False
     return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"] or slips(vehicle)))
 
 
@@ -155,17 +176,17 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
 
     Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. `progress`: says on
     stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps;
-    `estimated`: estimates the run's error (docs/error-estimate.md), with friction at three times the cost.
+    `estimated`: estimates the run's error (docs/accuracy.md), with friction at three times the cost.
     Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
     is refused or the outputs at the end leave the range of numbers, has the motion up to there.
     """
-    kept = kept_signals(check_scene(scene), signals)
+    if check_scene(scene).has_hinges:
+        if flag("estimated", estimated):
+            raise BadInput(f"{scene.path}: the error of vehicles with hinges is not estimated yet; leave estimated out")
+        return simulate_with_hinges(scene, signals, flag("progress", progress))
+    kept = kept_signals(scene, signals)
     progress, watched, estimated = flag("progress", progress), flag("watched", watched), flag("estimated", estimated)
-    core, steps = scene.core(), scene.steps()
-    every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
-    if steps / every > MOST_ROWS:
-        raise BadInput(f"{scene.path}: outputs.every_s: {steps // every} rows are too many to keep; make it longer, "
-                       f"for {MOST_ROWS} or fewer")
+    core, steps, every = scene.core(), scene.steps(), interval_of(scene)
     plant, inputs = scene.plant(core), scene.inputs_on_grid()
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
     sensors = scene.sensors_of(plant)  # refuses, by its field, what the core refuses
@@ -188,6 +209,31 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
                      recorder.columns(), recorder.grip(scene.run.step_s), refused)
     if watch:
         run.errors, run.error_columns = watch.estimate.read(), error_columns(watch, len(ticks))
+    if refused:
+        raise RunRefused(refused, run) from None
+    return run
+
+
+def interval_of(scene: Scene) -> int:
+    """Steps between two rows of outputs; BadInput for more rows than can be kept."""
+    steps = scene.steps()
+    every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
+    if steps / every > MOST_ROWS:
+        raise BadInput(f"{scene.path}: outputs.every_s: {steps // every} rows are too many to keep; make it longer, "
+                       f"for {MOST_ROWS} or fewer")
+    return every
+
+
+def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool) -> Trajectory:
+    """The run of a scene whose vehicle has bodies on hinges. Its error is not estimated yet."""
+    kept, steps, every = kept_signals_with_hinges(scene, signals), scene.steps(), interval_of(scene)
+    with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
+        plant, rows, commands, seconds, refused = run_with_hinges(scene, kept, every, moved)
+    ticks = np.append(np.arange(0, steps, every), steps)[: len(rows)]
+    if refused and len(rows):
+        ticks[-1] = plant.steps
+    run = Trajectory(scene, plant.method, plant.steps, seconds, ticks * scene.run.step_s, rows.columns(),
+                     refused=refused, limited=tuple(commands.limited.values()), least_margin=rows.least_margin)
     if refused:
         raise RunRefused(refused, run) from None
     return run

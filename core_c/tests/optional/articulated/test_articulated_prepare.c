@@ -207,6 +207,11 @@ static void methods_have_names_and_refuse_bad_steps(void) {
     TEST_ASSERT_EQUAL_INT(-1, laconic_articulated_method_by_name("euler"));
     TEST_ASSERT_EQUAL_STRING("", laconic_articulated_method_name(-1));
     ASSERT_STATUS(LACONIC_METHOD_UNKNOWN, laconic_articulated_integrator_prepare(&in, 4, &m, REAL(0.01), &why));
+    char text[200];
+    laconic_message(&why, text, sizeof text);
+    for (int k = 0; k < LACONIC_ARTICULATED_METHOD_COUNT; k++)
+        TEST_ASSERT_NOT_NULL(strstr(text, laconic_articulated_method_name(k)));
+    TEST_ASSERT_NULL(strstr(text, "exact-flow"));
     ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_articulated_integrator_prepare(&in, 0, &m, 0, &why));
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_articulated_integrator_prepare(&in, 0, &m, NOT_A_NUMBER, &why));
     ASSERT_STATUS(LACONIC_OVERFLOW, laconic_articulated_integrator_prepare(&in, 0, &m, REAL(1e30), &why));

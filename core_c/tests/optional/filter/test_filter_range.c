@@ -1,5 +1,8 @@
 /* Tests of filter_readings.c at the ends of the range: corrections up to them are made, others change nothing. */
 #include "factors.h"
+
+#include "check.h"
+#include "laconic/filter.h"
 #include "vehicles.h"
 
 #define CERTAIN REAL(1e-10) /* an error whose square is 0 beside 1 */
@@ -192,6 +195,171 @@ static void a_wheel_without_counts_has_not_turned(void) {
     TEST_ASSERT_TRUE(turned[0] == 0 && turned[1] == 0);
 }
 
+/* Tests of what a filter takes over at its start, and what not; test_filter.c sees it at work. */
+
+/* Each travel alone turns some of these wheels. */
+static laconic_vehicle most_wheels(void) {
+    laconic_vehicle v = bare_body();
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1 * i - 0.2, 0.1, PI / 4 * i, PI / 2);
+    return v;
+}
+
+/* Wheel angles are those since the start, whatever was set or travelled before. */
+static void wheel_angles_are_not_taken_over(void) {
+    const laconic_model m = model_of(most_wheels());
+    laconic_filter_settings settings;
+    memset(&settings, 0, sizeof settings);
+    for (int with_encoders = 0; with_encoders < 2; with_encoders++) {
+        laconic_state state = moving(&m, 0.3, -0.2, 0.5);
+        laconic_real angle[LACONIC_MAX_WHEELS];
+        laconic_filter filter;
+        settings.encoder_std_rad[1] = REAL(with_encoders);
+        for (int k = 0; k < 3; k++) state.travel[k].value = state.travel[k].rest = REAL(0.4 + k);
+        for (int i = 0; i < LACONIC_MAX_WHEELS; i++) state.wheel_angle_set_rad[i] = REAL(0.1 * (i + 1));
+        state.wheel_angle_set_rad[with_encoders] = NOT_A_NUMBER;
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+        laconic_wheel_angles(&m, &filter.state, angle);
+        for (int i = 0; i < LACONIC_MAX_WHEELS; i++) TEST_ASSERT_EQUAL_DOUBLE(0, (double)angle[i]);
+        TEST_ASSERT_EQUAL_MEMORY(&state.zeta, &filter.state.zeta, offsetof(laconic_state, travel));
+    }
+}
+
+static void numbers_before_and_behind_the_settings_are_not_read(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    laconic_filter filter;
+    struct {
+        laconic_real before;
+        laconic_filter_settings settings;
+        laconic_real behind;
+    } of;
+    memset(&of, 0, sizeof of);
+    of.before = of.behind = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &of.settings, &state));
+}
+
+/* Whichever wheel it is, the first or the last. */
+static void a_single_encoder_is_enough_to_read(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    const laconic_real turned[LACONIC_MAX_WHEELS] = {0};
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        laconic_filter_settings settings;
+        laconic_filter filter;
+        memset(&settings, 0, sizeof settings);
+        settings.encoder_std_rad[i] = REAL(0.1);
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_encoders(&filter, &m, turned, NULL));
+    }
+}
+
+/* Nobody squares that of an encoder before its first reading. */
+static void a_deviation_whose_square_leaves_the_range_is_refused_at_the_start(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        laconic_filter_settings settings;
+        laconic_filter filter;
+        memset(&settings, 0, sizeof settings);
+        settings.encoder_std_rad[i] = REAL(EITHER(1e160, 1e25));
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &m, &settings, &state));
+    }
+}
+
+/* As after a prediction that left the range. */
+static void what_lies_in_the_room_for_a_prediction_changes_none(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0.3, -0.2, 0.5);
+    const laconic_input held = no_input();
+    laconic_integrator integrator;
+    laconic_filter_settings settings;
+    laconic_filter clean, spoilt;
+    memset(&settings, 0, sizeof settings);
+    settings.force_noise_N_per_sqrt_Hz = settings.slip_noise_m_per_s_per_sqrt_Hz = REAL(0.1);
+    settings.bias_noise_rad_per_s2_per_sqrt_Hz = settings.encoder_std_rad[0] = settings.heading_std_rad = REAL(0.2);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&integrator, &laconic_rk4, &m, REAL(0.01), NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&clean, &m, &settings, &state));
+    spoilt = clean;
+    memset(&spoilt.room, 0xFF, sizeof spoilt.room); /* NaN in every number */
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&clean, &m, &integrator, &held));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&spoilt, &m, &integrator, &held));
+    for (int32_t j = 0; j < clean.errors; j++) {
+        TEST_ASSERT_TRUE(clean.covariance.diagonal[j] == spoilt.covariance.diagonal[j]);
+        for (int32_t i = 0; i < j; i++) TEST_ASSERT_TRUE(clean.covariance.upper[i][j] == spoilt.covariance.upper[i][j]);
+    }
+}
+
+/* Tests of factors.c: the factors of a matrix, and what counts as finite. */
+
+#define ROWS 5
+#define MANY 8
+
+/* Whole numbers from −8 to 8, the same in both types. */
+static laconic_real whole_number(uint32_t *seed) {
+    *seed = *seed * 1664525U + 1013904223U;
+    return (laconic_real)(int32_t)(*seed >> 16) / 4096 - 8;
+}
+
+static double product_of(const laconic_factors *f, int32_t i, int32_t j) {
+    double sum = 0;
+    for (int32_t k = 0; k < ROWS; k++) sum += (double)f->upper[i][k] * (double)f->diagonal[k] * (double)f->upper[j][k];
+    return sum;
+}
+
+/* U D Uᵀ is W diag(d) Wᵀ, and U is upper triangular with ones on its diagonal, whatever stood there before. */
+static void factors_are_those_of_the_weighted_rows(void) {
+    laconic_real row[LACONIC_FILTER_ERRORS][COLUMNS], weight[COLUMNS];
+    double expected[ROWS][ROWS];
+    laconic_factors found;
+    uint32_t seed = 7;
+    memset(&found, 7, sizeof found);
+    memset(row, 0, sizeof row);
+    for (int32_t c = 0; c < MANY; c++) weight[c] = REAL(c % 3 + 1);
+    for (int32_t i = 0; i < ROWS; i++)
+        for (int32_t c = 0; c < MANY; c++) row[i][c] = whole_number(&seed);
+    for (int32_t i = 0; i < ROWS; i++)
+        for (int32_t j = 0; j < ROWS; j++) {
+            expected[i][j] = 0;
+            for (int32_t c = 0; c < MANY; c++)
+                expected[i][j] += (double)row[i][c] * (double)weight[c] * (double)row[j][c];
+        }
+    laconic_factors_of(&found, row, weight, ROWS, MANY);
+    for (int32_t i = 0; i < ROWS; i++)
+        for (int32_t j = 0; j < ROWS; j++) {
+            ASSERT_NEAR(EITHER(1e-12, 1e-3), expected[i][j], product_of(&found, i, j));
+            if (j <= i) TEST_ASSERT_TRUE(found.upper[i][j] == (i == j ? REAL(1) : 0));
+        }
+    for (int32_t i = 0; i < ROWS; i++) TEST_ASSERT_TRUE(found.diagonal[i] > 0);
+}
+
+/* The last row is 0, and so is the second where it counts: neither has a part of those above it. */
+static void a_row_of_which_nothing_is_left_has_no_part_of_others(void) {
+    laconic_real row[LACONIC_FILTER_ERRORS][COLUMNS];
+    const laconic_real weight[COLUMNS] = {REAL(2), 0, REAL(3)};
+    laconic_factors found;
+    memset(row, 0, sizeof row);
+    memset(&found, 7, sizeof found);
+    row[0][0] = row[0][1] = row[1][1] = row[2][2] = REAL(1);
+    laconic_factors_of(&found, row, weight, 4, 3);
+    for (int32_t i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_DOUBLE(i == 0 ? 2 : i == 2 ? 3 : 0, (double)found.diagonal[i]);
+        for (int32_t j = 0; j < 4; j++) TEST_ASSERT_EQUAL_DOUBLE(i == j, (double)found.upper[i][j]);
+    }
+}
+
+static void a_covariance_is_finite_if_all_its_numbers_are(void) {
+    laconic_factors factors;
+    memset(&factors, 0, sizeof factors);
+    for (int32_t rows = 1; rows <= LACONIC_FILTER_ERRORS; rows++)
+        for (int32_t row = 0; row < LACONIC_FILTER_ERRORS; row++)
+            for (int32_t column = row; column < LACONIC_FILTER_ERRORS; column++) {
+                laconic_factors wrong = factors;
+                *(row == column ? &wrong.diagonal[row] : &wrong.upper[row][column]) = INFINITE;
+                TEST_ASSERT_TRUE(laconic_factors_finite(&wrong, rows) == (column >= rows));
+            }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_velocity_is_corrected_up_to_the_largest_in_any_direction);
@@ -206,5 +374,13 @@ int main(void) {
     RUN_TEST(a_fix_whose_innovation_is_no_number_is_refused);
     RUN_TEST(a_yaw_beyond_what_can_be_counted_is_refused_in_either_direction);
     RUN_TEST(a_wheel_without_counts_has_not_turned);
+    RUN_TEST(wheel_angles_are_not_taken_over);
+    RUN_TEST(a_single_encoder_is_enough_to_read);
+    RUN_TEST(a_deviation_whose_square_leaves_the_range_is_refused_at_the_start);
+    RUN_TEST(numbers_before_and_behind_the_settings_are_not_read);
+    RUN_TEST(what_lies_in_the_room_for_a_prediction_changes_none);
+    RUN_TEST(factors_are_those_of_the_weighted_rows);
+    RUN_TEST(a_row_of_which_nothing_is_left_has_no_part_of_others);
+    RUN_TEST(a_covariance_is_finite_if_all_its_numbers_are);
     return UNITY_END();
 }

@@ -7,7 +7,6 @@ import zlib
 import pytest
 
 from assurance.boards import busy_cores, start
-from laconic.base.paths import scene_names
 from laconic.can.rig.boards import emulated_node, why_no_emulation
 from laconic.can.rig.choices import BOARDS
 from laconic.can.rig.errors import NodeRefused
@@ -15,7 +14,7 @@ from laconic.can.rig.judge import judge_scaled
 from laconic.can.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.can.rig.wire import wire
 from laconic.errors import BadInput, Refused
-from laconic.scene import Scene, read_scene
+from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.scene.ground import has_friction
 from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.tools.report.node_sizes import cost_of
@@ -26,6 +25,7 @@ FULL = [name for name in BOARDS if "-" not in name]
 WITH_ONE_PROTOCOL = ("an386-drives", "an386-odrive", "an386-canopen", "an386-moteus")
 STEPS = {"an385": 4000, "microbit": 2000}  # without floating-point hardware; the others take 10,000
 STEPS_PER_SYNC = 500
+ALL_STEPS = pytest.param(1, marks=pytest.mark.nightly)
 MASS = wire().number("PARAMETER", "field", "MASS")
 # what a whole load of nothing but masses is refused for; a board in double misses the upper halves first
 UNFIT = dict.fromkeys(FULL, "parameter missing") | {"an500": "input incomplete"}
@@ -48,20 +48,21 @@ def rk4_can(scene: Scene) -> bool:
     return True
 
 
+@pytest.mark.parametrize("share", [10, ALL_STEPS], ids=["a tenth", "all steps"])
 @pytest.mark.parametrize("name", FULL)
-def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str) -> None:
+def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str, share: int) -> None:
     with emulated_node(name) as node:
-        for scene_name in scene_names():
+        for scene_name in rigid_scene_names():
             scene = read_scene(scene_name).with_run(real=BOARDS[name].real)
             if name == "microbit" and has_friction(scene.vehicle):  # left out of that image
                 continue
             steps = STEPS.get(name, 10_000) if scene.inputs_on_grid().is_held else 300  # sampled: a SYNC for each step
-            run = run_lockstep(node, scene, steps, every=STEPS_PER_SYNC)
+            run = run_lockstep(node, scene, steps // share, every=STEPS_PER_SYNC // share)
             assert run.states.tobytes() == twin_states(scene, run).tobytes(), scene_name
             node.stop()
 
 
-@pytest.mark.parametrize("busy", [0, 2], ids=["idle", "busy"])
+@pytest.mark.parametrize("busy", [0, pytest.param(2, marks=pytest.mark.nightly)], ids=["idle", "busy"])
 @pytest.mark.parametrize("name", list(BOARDS))
 def test_a_board_that_has_just_been_started_loads_a_vehicle_at_once(name: str, busy: int) -> None:
     with busy_cores(busy):
@@ -96,7 +97,7 @@ def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(nam
 
 def test_the_small_image_gives_the_bits_of_the_host_core_with_its_one_method() -> None:
     with emulated_node("an386-small") as node:
-        scenes = [read_scene(n).with_run(real="single", method=EXPLICIT) for n in scene_names()]
+        scenes = [read_scene(n).with_run(real="single", method=EXPLICIT) for n in rigid_scene_names()]
         scenes = [scene for scene in scenes if fits_small_image(scene) and rk4_can(scene)]
         assert len(scenes) >= 3
         for scene in scenes:

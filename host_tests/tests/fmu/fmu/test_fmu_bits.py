@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from fmu_importer import OK, Importer
 
-from laconic.base.paths import scene_names
 from laconic.core import load
 from laconic.fmu import make_fmu
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 
 VARIANTS = {"fmi2": (2, False), "fmi3": (3, False), "fmi3-scalar": (3, True)}
 STEPS, EVERY = 10_000, 100
@@ -50,7 +49,7 @@ def random_inputs(count: int, wheels: int) -> list[dict[str, list[float]]]:
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
-@pytest.mark.parametrize("scene_name", scene_names())
+@pytest.mark.parametrize("scene_name", rigid_scene_names())
 def test_ten_thousand_steps_give_the_same_bits_as_the_core(scene_name: str, variant: str, tmp_path: Path) -> None:
     version, scalar = VARIANTS[variant]
     scene = read_scene(scene_name).with_run(real="double")

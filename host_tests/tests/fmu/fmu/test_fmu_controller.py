@@ -13,11 +13,10 @@ from fmpy.validation import validate_fmu
 from fmu_importer import OK, Importer
 from lxml import etree
 
-from laconic.base.paths import scene_names
 from laconic.cli.main import run
 from laconic.fmu import make_fmu
 from laconic.fmu.ssp import SSC, SSD, identifier, make_controller, make_ssp, structure
-from laconic.scene import Scene, read_scene
+from laconic.scene import Scene, read_scene, rigid_scene_names
 
 SETPOINT = (12.0, 10.0, 12.0, 10.0)
 STEP_S, STEPS = 0.01, 400
@@ -71,7 +70,7 @@ def test_the_ssp_runs_in_fmpy_and_the_wheels_reach_their_set_points(scene: Scene
         assert result[name][-1] == result[f"vehicle.{name}"][-1] != 0.0
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_the_ssp_is_valid_and_its_names_are_identifiers_with_units(name: str) -> None:
     text = structure(read_scene(name)).encode("utf-8")
     folder = Path(fmpy.__file__).parent / "ssp" / "schema"

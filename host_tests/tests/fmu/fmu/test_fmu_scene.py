@@ -16,10 +16,9 @@ from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 from fmu_importer import ERROR, OK, Importer, generic
 
-from laconic.base.paths import scene_names
 from laconic.cli.main import run
 from laconic.fmu import make_fmu, start_values
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 from laconic.scene.methods import METHODS
 from laconic_fmu.archive import MOST_ROWS, output_step, read_parts
 from laconic_fmu.icon import BLUE, ORANGE, RED, SIZE, icon_png, icon_svg
@@ -47,7 +46,7 @@ def share(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
     return float((picture == colour).all(axis=2).mean())
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_the_icon_shows_the_wheels_where_they_are(name: str) -> None:
     values = start_values(read_scene(name))
     root = ET.fromstring(icon_svg(values, "a <b> & c"))
@@ -132,7 +131,7 @@ def test_the_default_experiments_step_divides_the_run_whatever_the_number_of_ste
 
 
 @BOTH
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_an_importer_that_takes_the_default_experiment_writes_no_more_than_a_thousand_rows(
         version: int, name: str, tmp_path: Path) -> None:
     fmu = make_fmu(read_scene(name), tmp_path / "x.fmu", version=version, sources=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 
 import pytest
 from fmu_importer import DISCARD, ERROR, OK, Importer, generic
@@ -305,3 +306,71 @@ def test_model_exchange_has_no_time_before_its_start(version: int) -> None:
         assert importer.log[-1][2] == "SetTime: 4.9 s is before the start time 5 s"
         for time in (5.0, 5.0 - 1e-12, 6.0, 5.5):
             importer.must("SetTime", time)
+
+
+def test_a_long_step_is_cancelled_by_another_thread_and_taken_back() -> None:
+    with Importer(generic(2), logging=True) as importer, Importer(generic(2)) as other:
+        for each in (importer, other):
+            assert each.set("step_s", 0.001) == OK
+            each.initialize()
+            assert each.set("voltage_V", 3, 4, 5, 6) == OK
+
+        def cancel() -> None:
+            while importer.call("CancelStep") != OK:
+                pass
+
+        thread = threading.Thread(target=cancel)
+        thread.start()
+        assert importer.step(0.0, 90_000.0) == DISCARD
+        thread.join()
+        assert "the communication step is cancelled after" in importer.log[-1][2]
+        assert importer.time() == 0.0
+        for each in (importer, other):
+            assert each.step(0.0, 0.1) == OK
+        assert importer.get("nu_rad_per_s") == other.get("nu_rad_per_s")
+        assert importer.get("x_m") == other.get("x_m")
+
+
+def test_without_a_running_step_there_is_nothing_to_cancel() -> None:
+    with Importer(generic(2)) as importer:
+        importer.initialize()
+        assert importer.call("CancelStep") == ERROR
+        assert importer.log[-1][2] == \
+            "CancelStep is not allowed in step mode: no step is running; another thread may call it while DoStep runs"
+        assert importer.step(0.0, 0.1) == OK
+
+
+@BOTH
+def test_a_step_of_more_internal_steps_than_an_importer_can_wait_for_is_refused(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", 0.001) == OK
+        importer.initialize()
+        assert importer.step(0.0, 1e9) == ERROR
+        assert importer.log[-1][2] == (
+            "the communication step of 1000000000 s would be 1000000000000 internal steps of 0.001 s (step_s) without "
+            "a return: take 100000 s or less")
+        assert importer.step(0.0, 0.1) == OK
+
+
+def test_an_importer_that_may_return_early_ends_a_step_of_any_length() -> None:
+    early = []
+
+    def update(_environment, _time, _can_set, _can_get, _finished, can_return, returns, return_time) -> None:
+        early.append(can_return)
+        returns[0] = len(early) == 3
+        return_time[0] = _time
+
+    with Importer(generic(3), early_return=True, update=update) as importer:
+        assert importer.set("step_s", 0.001) == OK
+        importer.initialize()
+        assert importer.step(0.0, 1e9) == OK
+        assert importer.end["early"]
+        assert importer.end["time_s"] == 0.003
+
+
+@BOTH
+def test_times_that_differ_are_shown_by_digits_that_differ(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize(start_s=1e12)
+        assert importer.step(math.nextafter(1e12, math.inf), 1e-6) == ERROR
+        assert "the step starts at 1000000000000.0001 s, but the model is at 1000000000000 s" in importer.log[-1][2]

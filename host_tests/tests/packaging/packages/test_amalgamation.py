@@ -68,7 +68,8 @@ def test_a_step_compiles_without_a_warning_for_sanitizers_too(tmp_path):
 
 
 @pytest.mark.parametrize(("compiler", "real", "effort"), [
-    ("gcc", "double", "-O2"), ("clang", "double", "-O1"), ("g++", "single", "-O1")])
+    ("gcc", "double", "-O2"), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("clang", "double", "-O1"), ("g++", "single", "-O1")))])
 def test_without_any_option_for_bits_it_has_the_bits_of_the_core(compiler, real, effort, pair):
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")
@@ -123,6 +124,7 @@ def test_options_that_break_its_promises_are_refused_and_only_in_its_own_file(pa
     assert "laconic: -ffast-math" in done.stderr
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
 def test_constants_in_single_precision_are_refused_in_double_and_change_no_bit_in_single(pair):
     (pair / "user.c").write_text('#include "laconic/laconic.h"\nint main(void) { return 0; }\n', encoding="utf-8")

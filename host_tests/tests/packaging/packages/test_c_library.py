@@ -10,7 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from laconic.base.paths import SOURCE_DIR, build_dir
+from laconic.base.paths import SOURCE_DIR, build_dir, built
+
+needs_c_library = pytest.mark.skipif(shutil.which("cmake") is None or shutil.which("gcc") is None,
+                                     reason="no cmake or gcc")
+
 
 PROGRAM = """
 #include <laconic/laconic.h>
@@ -45,8 +49,6 @@ add_executable(user user.cpp)
 target_link_libraries(user PRIVATE laconic::{component})
 """
 SIZES = {"core": 8, "core_single": 4}
-
-pytestmark = pytest.mark.skipif(shutil.which("cmake") is None or shutil.which("gcc") is None, reason="no cmake or gcc")
 
 
 def run(*command: str | Path, **environment: str) -> str:
@@ -100,12 +102,14 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "stage" / "opt" / "laconic"
 
 
+@needs_c_library
 @pytest.mark.parametrize("component", SIZES)
 def test_a_project_finds_the_installed_core_by_find_package(component, whole, tmp_path):
     source = user(tmp_path / "user", FOUND.format(component=component), component)
     assert run(built_user(source, f"-DCMAKE_PREFIX_PATH={whole}")) == "sound\n"
 
 
+@needs_c_library
 @pytest.mark.skipif(shutil.which("pkg-config") is None, reason="no pkg-config")
 @pytest.mark.parametrize(("package", "component"), [("laconic", "core"), ("laconic_single", "core_single")])
 def test_pkg_config_finds_it_where_it_was_moved_to(package, component, whole, tmp_path):
@@ -123,6 +127,7 @@ def version() -> str:
     return re.findall(r'^#define LACONIC_VERSION "(.*)"$', header, re.MULTILINE)[0]
 
 
+@needs_c_library
 def test_headers_licence_and_the_two_files_are_installed_and_each_component_by_itself(whole, tmp_path):
     there = {str(path.relative_to(whole)) for path in whole.rglob("*") if path.is_file()}
     headers = {f"include/laconic/{path.name}" for path in (SOURCE_DIR / "core_c/include/laconic").glob("*.h")}
@@ -133,6 +138,7 @@ def test_headers_licence_and_the_two_files_are_installed_and_each_component_by_i
         "laconic.h", "laconic.c", "laconic_single.h", "laconic_single.c"}
 
 
+@needs_c_library
 @pytest.mark.nightly
 def test_the_core_alone_needs_no_python_and_makes_a_shared_library(shared, tmp_path):
     source = user(tmp_path / "user", FOUND.format(component="core_single"), "core_single")
@@ -140,12 +146,15 @@ def test_the_core_alone_needs_no_python_and_makes_a_shared_library(shared, tmp_p
     assert [*shared.rglob("liblaconic_single.*.so")] + [*shared.rglob("liblaconic_single.so.*")]
 
 
+@pytest.mark.nightly
+@needs_c_library
 def test_a_component_that_was_not_built_is_missing_by_its_name(shared, tmp_path):
     source = user(tmp_path / "user", FOUND.format(component="core"), "core")
     message = refused("cmake", "-S", source, "-B", source / "build", f"-DCMAKE_PREFIX_PATH={shared}")
     assert "this installation has no core;" in message
 
 
+@needs_c_library
 def test_a_program_that_would_link_both_scalar_types_is_refused(whole, tmp_path):
     both = FOUND.format(component="core").replace("laconic::core)", "laconic::core laconic::core_single)")
     source = user(tmp_path / "user", both, "core")
@@ -160,6 +169,7 @@ FetchContent_MakeAvailable(laconic)
 """
 
 
+@needs_c_library
 @pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
 @pytest.mark.parametrize(("taken", "component", "flags"), [
@@ -171,3 +181,114 @@ def test_a_project_of_cpp_takes_it_in_and_neither_changes_the_other(taken, compo
     program = built_user(source, f"-DCMAKE_C_FLAGS={flags}", f"-DLACONIC_REALS={real}",
                          "-DFETCHCONTENT_FULLY_DISCONNECTED=ON")
     assert run(program) == "sound\n"
+
+
+# ---- The page about C: its C++ program prints what the README's does, and its commands name what is there.
+
+PAGE = (SOURCE_DIR / "docs" / "c.md").read_text(encoding="utf-8")
+README = (SOURCE_DIR / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
+def test_its_program_in_cpp_prints_what_the_readme_states(tmp_path):
+    (tmp_path / "program.cpp").write_text(re.findall(r"```cpp\n(.*?)```", PAGE, re.DOTALL)[0], encoding="utf-8")
+    shutil.copytree(built("amalgamation"), tmp_path / "laconic")
+    subprocess.run(["g++", "-std=c++11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I.", "-x", "c++", "program.cpp",
+                    "laconic/laconic.c", "-o", "program"], cwd=tmp_path, check=True)
+    printed = subprocess.run(["./program"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert printed == re.findall(r"```text\n(.*?)```", README, re.DOTALL)[0]
+
+
+@pytest.mark.nightly
+def test_its_command_makes_the_two_files_by_python_alone(tmp_path):
+    command = re.search(r"^PYTHONPATH=.* python3 (.*) laconic$", PAGE, re.MULTILINE)
+    assert command is not None
+    subprocess.run(["sh", "-c", f"{command[0].removesuffix(' laconic')} {tmp_path}"], cwd=SOURCE_DIR, check=True)
+    assert (tmp_path / "laconic.c").read_bytes() == built("amalgamation/laconic.c").read_bytes()
+
+
+@pytest.mark.nightly
+def test_its_targets_components_and_options_exist():
+    core, packages = SOURCE_DIR / "core_c", SOURCE_DIR / "packaging" / "c"
+    files = [core / "CMakeLists.txt", *(core / "cmake").iterdir(), packages / "CMakeLists.txt"]
+    lists = "".join(path.read_text(encoding="utf-8") for path in files)
+    assert [name for name in re.findall(r"`(laconic_(?:runtime|development|amalgamation|packages))`", PAGE)
+            if name not in lists] == []
+    assert [name for name in re.findall(r"--target (\w+)", PAGE) if f"add_custom_target({name} " not in lists] == []
+    assert [name for name in re.findall(r"`(LACONIC_[A-Z]+)`", PAGE) if name not in lists] == []
+
+
+# ---- Names of core and node against macros of platforms: a file that such macros stand before compiles as without
+# them.
+
+# Words that headers, compilers or frameworks define, by where they come from. Each becomes a syntax error here.
+WORDS = {
+    "Windows": """near far small hyper pascal cdecl fortran interface NEAR FAR IN OUT OPTIONAL CALLBACK WINAPI
+        APIENTRY CONST VOID THIS THIS_ PURE STRICT ERROR DELETE TRUE FALSE TRANSPARENT OPAQUE ABSOLUTE
+        RELATIVE NO_ERROR DIFFERENCE INFINITE IGNORE MAX_PATH UNALIGNED DUPLICATE ALTERNATE WINDING
+        SYNCHRONIZE SEVERITY_ERROR FACILITY_NULL grp1 grp2 rad1 rad2 chx1 edt1 lst1 scr1 stc1 ico1 psh1 cmb1
+        ctl1 frm1 rct1""",
+    "math.h and complex.h": "DOMAIN SING OVERFLOW UNDERFLOW TLOSS PLOSS HUGE I complex imaginary",
+    "gcc in its own mode": "unix linux i386 arm mips sun vax",
+    "16-bit and embedded compilers": """huge sbit sfr sfr16 idata pdata xdata bdata interrupt using reentrant rom ram
+        eeprom persistent bank0 bank1 bank2 bank3 cregister ioport onchip monitor saddr callt sreg task""",
+    "Arduino": """HIGH LOW INPUT OUTPUT INPUT_PULLUP PI HALF_PI TWO_PI DEG_TO_RAD RAD_TO_DEG EULER SERIAL DISPLAY
+        LSBFIRST MSBFIRST CHANGE FALLING RISING DEFAULT INTERNAL EXTERNAL B0 B1 B00 B01 B10 B11 A0 A1 A2 A3
+        A4 A5 A6 A7 SS SCK MISO MOSI SDA SCL""",
+    "chips": """D0 D1 D2 D3 LED TX RX PORT PIN SP SREG CAN CAN0 CAN1 CRC RTC DMA DMA1 ADC ADC1 DAC TIM1 TIM2 USART1
+        UART0 UART1 SPI1 I2C1 GPIOA GPIOB PWR RCC FLASH EXTI NVIC SCB SysTick IWDG WWDG RNG HASH SET RESET
+        ENABLE DISABLE BIT0 BIT1 BIT7 BIT31""",
+    "glibc, termios, curses, X": """major minor makedev environ B50 B110 B9600 ECHO Bool Status True False None
+        Success Always Above Below Convex Complex""",
+    "Qt": "signals slots emit foreach forever",
+}
+CALLED = """min max abs round constrain radians degrees sq bit bitRead bitSet bitClear bitWrite lowByte highByte word F
+    interrupts noInterrupts swap clamp check verify require likely unlikely isnan isinf isfinite signbit BIT BV _BV MIN
+    MAX CLAMP ARRAY_SIZE STRINGIFY CONTAINER_OF ROUND_UP SET_BIT CLEAR_BIT READ_BIT READ_REG WRITE_REG MODIFY_REG
+    POSITION_VAL TEXT OF RGB UNUSED KB MB GB move erase clear refresh timeout getch border box scroll cli sei sbi
+    cbi""".split()
+CORE, NODE = SOURCE_DIR / "core_c", SOURCE_DIR / "firmware_stub"
+FOLDERS = [CORE / "include", *(path for path in (CORE / "src").iterdir() if path.is_dir())]
+COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
+needs_macro_names = pytest.mark.skipif(not COMPILERS, reason="neither gcc nor clang")
+
+
+@pytest.fixture(scope="module")
+def macros(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A header that defines them all, behind those of the C library."""
+    words = [word for group in WORDS.values() for word in group.split()]
+    lines = [f"#include <{name}.h>" for name in ("float", "stdbool", "stddef", "stdint", "string")]
+    lines += [f"#undef {word}\n#define {word} @macro_{word}@" for word in words]
+    lines += [f"#undef {word}\n#define {word}(...) @macro_{word}@" for word in CALLED]
+    path = tmp_path_factory.mktemp("macros") / "macros.h"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def compiled(macros: Path, folders: list[Path], files: list[Path], *options: str) -> None:
+    assert files
+    done = subprocess.run([COMPILERS[0], "-std=c99", "-fsyntax-only", "-w", *options, "-include", str(macros),
+                           *(f"-I{folder}" for folder in folders), *map(str, files)],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:2000]
+
+
+@needs_macro_names
+def test_the_two_files_compile_behind_every_platforms_macros(macros):
+    compiled(macros, [built("amalgamation")], [built("amalgamation/laconic.c")])
+    compiled(macros, [built("amalgamation")], [built("amalgamation/laconic_single.c")])
+
+
+@needs_macro_names
+@pytest.mark.parametrize("part", ["articulated", "batch", "derivatives", "estimate", "filter", "soft_double"])
+def test_each_optional_part_of_the_core_does(part, macros):
+    files = [path for path in sorted((CORE / "optional" / part).glob("*.c")) if path.name != "check_double.c"]
+    compiled(macros, [*FOLDERS, CORE / "optional" / "derivatives"], files)
+
+
+@needs_macro_names
+def test_the_node_its_drives_and_the_gate_do(macros):
+    folders = [*FOLDERS, NODE / "include", NODE / "node", NODE / "drives"]
+    files = [path for part in ("node", "wire", "secure", "drives") for path in (NODE / part).glob("**/*.c")]
+    compiled(macros, [*folders, built("firmware_stub/wire")], sorted(files), "-DLACONIC_NODE_WITH_ESTIMATE=1")

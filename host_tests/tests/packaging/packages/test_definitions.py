@@ -43,18 +43,23 @@ def run(folder: Path, *words: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def libraries(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The two files, and the core compiled by each definition: unoptimised, but where calls must be left out."""
+    """The two files, the core compiled without a definition, and programs that call it."""
     folder = tmp_path_factory.mktemp("definitions")
     shutil.copytree(built("amalgamation"), folder / "laconic")
-    for number, definition in enumerate([None, *OTHERS]):
-        option = [f"-D{definition}"] if definition else []
-        effort = "-O1" if "FRICTION" in str(definition) else "-O0"
-        done = run(folder, effort, "-ffunction-sections", *option, "-c", "laconic/laconic.c", "-o", f"{number}.o")
-        assert done.returncode == 0, done.stderr
+    compile_core(folder, 0)
     for name, call in CALLS.items():
         text = f"#include <laconic/laconic.h>\nint main(void) {{ {call} }}\n"
         (folder / f"{name}.c").write_text(text, encoding="utf-8")
     return folder
+
+
+def compile_core(folder: Path, number: int) -> None:
+    """NUMBER.o: the core by one definition, or by none as 0."""
+    definition = OTHERS[number - 1] if number else ""
+    effort = "-O1" if "FRICTION" in definition else "-O0"
+    done = run(folder, effort, "-ffunction-sections", *([f"-D{definition}"] if definition else []), "-c",
+               "laconic/laconic.c", "-o", f"{number}.o")
+    assert done.returncode == 0, done.stderr
 
 
 def missing(done: subprocess.CompletedProcess[str]) -> set[str]:
@@ -62,10 +67,12 @@ def missing(done: subprocess.CompletedProcess[str]) -> set[str]:
     return set(re.findall(r"laconic_built_with(?:out)?_(\w+)", done.stderr))
 
 
-@pytest.mark.parametrize("number", range(1, len(OTHERS) + 1))
+@pytest.mark.parametrize("number", [
+    1, *(pytest.param(each, marks=pytest.mark.nightly) for each in range(2, len(OTHERS) + 1))])
 def test_a_program_and_a_library_that_differ_by_one_definition_do_not_link_and_it_is_named(number, libraries):
     definition = OTHERS[number - 1]
     name = definition.partition("=")[0]
+    compile_core(libraries, number)
     for option, library in ((["-D" + definition], "0.o"), ([], f"{number}.o")):
         named = missing(run(libraries, *option, "-I.", "plant.c", library, "-o", "program"))
         assert len(named) == 1 and all(each.startswith(name) for each in named)
@@ -114,8 +121,9 @@ for name, library in loaded:
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names of plugins meet in ELF alone")
-@pytest.mark.parametrize("order", [("usual", "single", "four"), ("single", "four", "usual"),
-                                   ("four", "usual", "single")])
+@pytest.mark.parametrize("order", [
+    ("usual", "single", "four"), pytest.param(("single", "four", "usual"), marks=pytest.mark.nightly),
+    pytest.param(("four", "usual", "single"), marks=pytest.mark.nightly)])
 def test_plugins_with_other_builds_in_one_process_call_their_own_functions(order, libraries):
     (libraries / "plugin.c").write_text(PLUGIN, encoding="utf-8")
     for name, options in PLUGINS.items():

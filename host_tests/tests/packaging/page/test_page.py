@@ -8,7 +8,8 @@ from itertools import pairwise
 
 import pytest
 
-from laconic.base.paths import build_dir, scene_names
+from laconic.base.paths import build_dir
+from laconic.scene import rigid_scene_names
 from laconic.scene.methods import EXPLICIT, STIFF_4
 from laconic_build.page.browser import Browser
 
@@ -41,9 +42,10 @@ def test_it_opens_from_disk_in_one_file_without_network_and_has_the_native_cores
     assert [name for name in fetched if not name.startswith(("blob:", "data:"))] == []
 
 
+@pytest.mark.nightly
 def test_every_scene_of_the_project_can_be_chosen_and_runs(page):
     offered = page.js("return [...document.getElementById('robot').options].map((each) => each.value)")
-    assert sorted(offered) == sorted([*scene_names(), "own"])
+    assert sorted(offered) == sorted([*rigid_scene_names(), "own"])
     for name in offered:
         page.choose("robot", name)
         step(page, 3)
@@ -65,6 +67,7 @@ def test_play_pause_step_speed_and_restart(page):
     page.wait("return document.getElementById('time').textContent === '0.00 s'")
 
 
+@pytest.mark.nightly
 def test_it_moves_at_once_where_nobody_asked_for_less_motion(window):
     window.open(PAGE)
     assert window.text("play") == "Pause"
@@ -72,6 +75,7 @@ def test_it_moves_at_once_where_nobody_asked_for_less_motion(window):
     assert window.errors() == []
 
 
+@pytest.mark.nightly
 def test_the_scenes_own_drive_ends_at_its_end_and_begins_anew(page):
     page.choose("robot", "skid_steer")
     step(page, 45)
@@ -133,6 +137,7 @@ def test_keys_drive_while_they_are_held(page):
     page.key(("keyUp", "a"))
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("clicked", ["play", "restart", "zoom-in", "friction", "stop"])
 def test_keys_drive_after_a_click_on_what_needs_none_of_them(page, clicked):
     page.click(clicked)
@@ -143,6 +148,7 @@ def test_keys_drive_after_a_click_on_what_needs_none_of_them(page, clicked):
         assert float(page.value("forward")) == 0, key
 
 
+@pytest.mark.nightly
 def test_letters_drive_after_a_click_on_a_slider_whose_arrows_stay_its_own(page):
     page.click("[name=drive][value=velocity]")
     page.click("turn")
@@ -155,6 +161,7 @@ def test_letters_drive_after_a_click_on_a_slider_whose_arrows_stay_its_own(page)
     assert float(page.value("forward")) == 0
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("field", ["field-vehicle.mass_kg", "speed"])
 def test_keys_leave_fields_alone(page, field):
     page.js("document.getElementById(arguments[0]).focus()", field)
@@ -162,6 +169,7 @@ def test_keys_leave_fields_alone(page, field):
     assert [float(page.value(name)) for name in DIRECTIONS] == pytest.approx([0, 0, 0])
 
 
+@pytest.mark.nightly
 def test_a_gamepads_sticks_drive_and_let_go(page):
     page.js("window.axes = [0, -1, -0.5, 0]; navigator.getGamepads = () => [{ axes: window.axes }]")
     page.wait("return Number(document.getElementById('forward').value) > 0")
@@ -172,6 +180,7 @@ def test_a_gamepads_sticks_drive_and_let_go(page):
     page.wait("return Math.abs(Number(document.getElementById('forward').value)) < 1e-9")
 
 
+@pytest.mark.nightly
 def test_the_view_comes_closer_and_goes_farther(page):
     def picture() -> str:
         page.call("/execute/async", {"args": [], "script": """const done = arguments[0];
@@ -205,6 +214,7 @@ def test_methods_and_steps_take_the_same_drive_with_their_own_error(page):
         assert seconds(page) == pytest.approx(1.0), method
 
 
+@pytest.mark.nightly
 def test_what_a_method_cannot_take_is_told_beside_it_in_the_cores_words(page):
     page.choose("robot", "turtlebot3_burger")
     page.choose("method", EXPLICIT)
@@ -216,6 +226,7 @@ def test_what_a_method_cannot_take_is_told_beside_it_in_the_cores_words(page):
     assert "knows neither ground friction" in page.text("method-error")
 
 
+@pytest.mark.nightly
 def test_error_over_cost_is_measured_for_every_method(page):
     page.js("for (const each of document.querySelectorAll('.inner')) each.open = true")
     page.wait("return document.getElementById('accuracy-note').textContent.startsWith('Error of the place')")
@@ -258,6 +269,7 @@ def test_the_ground_can_have_friction_and_the_robot_without_slip_goes_beside(pag
     assert "fixed wheels on parallel axle lines only drive straight" in page.text("ideal-note")
 
 
+@pytest.mark.nightly
 def test_a_slope_pulls_the_robot_down(page):
     page.choose("robot", "own")
     page.click("[name=view][value=drive]")
@@ -276,6 +288,7 @@ SOME = {"vehicle.com_x_m": "0.03", "vehicle.com_y_m": "0.02", "vehicle.motor.vis
         "vehicle.drive.supply_V": "4", "vehicle.drive.current_limit_A": "0.1", "vehicle.payload.mass_kg": "5"}
 
 
+@pytest.mark.nightly
 def test_every_number_of_the_robot_changes_how_the_same_drive_ends(page):
     page.js("for (const each of document.querySelectorAll('aside details')) each.open = true")
     step(page, 4)
@@ -307,6 +320,7 @@ def test_a_number_that_the_core_refuses_is_told_under_its_field_and_stops_the_ro
     assert page.text(f"field-{path}-error") == ""
 
 
+@pytest.mark.nightly
 def test_twenty_more_vehicles_move_within_a_frame_of_the_display(page):
     page.choose("robot", "kuka_youbot")
     page.click("fleet")
@@ -321,6 +335,7 @@ def test_twenty_more_vehicles_move_within_a_frame_of_the_display(page):
     assert cost < FRAME_MS
 
 
+@pytest.mark.nightly
 def test_times_and_places_only_grow_while_it_plays(page):
     page.click("play")
     times = [page.wait(f"const t = parseFloat(document.getElementById('time').textContent); return t > {limit} && t")

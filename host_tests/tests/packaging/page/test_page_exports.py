@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import re
 import shutil
@@ -11,13 +12,16 @@ import sys
 from pathlib import Path
 
 import pytest
+from conftest import PAGE
 
 from laconic import read_scene
-from laconic.base.paths import SOURCE_DIR, build_dir
+from laconic.base.paths import SCENE_DIR, SOURCE_DIR, build_dir
 from laconic.core import load
-from laconic_build.page.browser import Browser
-
-pytestmark = pytest.mark.nightly
+from laconic_build.page import page
+from laconic_build.page.browser import BROWSER, DRIVER, Browser
+from laconic_build.page.bundle import BadBundle, bundle
+from laconic_build.page.figures import figures_of, page_figures, text_of
+from laconic_build.page.page import TooLarge, make_page
 
 
 def pose(page: Browser) -> list[float]:
@@ -65,6 +69,7 @@ def simulated(scene_file: Path) -> list[float]:
 ROBOTS = ("robotino2", "skid_steer", "example_two_wheel_sizes", "canopen_agv", "own")
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_the_exported_scene_runs_to_the_same_bits_and_so_does_the_example_in_c(page, robot, tmp_path):
     page.choose("robot", robot)
@@ -92,6 +97,7 @@ def compiled(text: str, folder: Path) -> list[float]:
     return [float(number) for number in re.findall(r"-?\d[\d.e+-]*", printed)]
 
 
+@pytest.mark.nightly
 def test_laconic_simulate_takes_the_exported_scene(page, tmp_path):
     drive(page)
     file, table = tmp_path / "robot.toml", tmp_path / "robot.csv"
@@ -104,6 +110,7 @@ def test_laconic_simulate_takes_the_exported_scene(page, tmp_path):
     assert found == pose(page)
 
 
+@pytest.mark.nightly
 def test_before_anything_was_driven_the_scenes_own_drive_is_exported(page, tmp_path):
     (tmp_path / "robot.toml").write_text(exported(page, "toml"), encoding="utf-8")
     own, again = read_scene("robotino2"), read_scene(tmp_path / "robot.toml")
@@ -115,6 +122,7 @@ def test_before_anything_was_driven_the_scenes_own_drive_is_exported(page, tmp_p
     assert compiled(exported(page, "c"), tmp_path) == whole
 
 
+@pytest.mark.nightly
 def test_every_scene_is_exported_as_one_that_is_read_again(page, tmp_path):
     for name in page.js("return [...document.getElementById('robot').options].map((each) => each.value)"):
         page.choose("robot", name)
@@ -127,6 +135,7 @@ def test_every_scene_is_exported_as_one_that_is_read_again(page, tmp_path):
             assert again.initial == read_scene(name).initial, name
 
 
+@pytest.mark.nightly
 def test_an_export_is_saved_and_copied(page, tmp_path):
     page.chromium("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path), eventsEnabled=True)
     page.click("export-c")
@@ -137,3 +146,131 @@ def test_an_export_is_saved_and_copied(page, tmp_path):
     page.call("/execute/async", {"args": [], "script": "const done = arguments[0]; setTimeout(done, 300);"})
     page.click("export-close")
     assert (tmp_path / "robot.c").read_text(encoding="utf-8") == text
+
+
+# ---- Numbers in the editor that were typed by mistake: the page goes on answering, and the robot comes back.
+
+SET = """const field = document.getElementById(arguments[0]);
+field.value = arguments[1];
+for (const type of ['input', 'change']) field.dispatchEvent(new Event(type, {bubbles: true}));
+window.drawn = false;
+requestAnimationFrame(() => requestAnimationFrame(() => { window.drawn = true; }));"""
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("field", "number"), [
+    ("field-vehicle.wheel_radius_m", "1e6"), ("field-vehicle.com_x_m", "1e6"), ("field-vehicle.com_y_m", "1e308")])
+def test_a_length_typed_by_mistake_does_not_stop_the_page(window, field, number):
+    window.open(PAGE, prefers_reduced_motion="reduce")
+    window.js("document.querySelector('input[name=view][value=draw]').click()")
+    before = window.js("return document.getElementById(arguments[0]).value", field)
+    for value in (number, before):
+        window.js(SET, field, value)
+        window.wait("return window.drawn")
+    assert window.value(field) == before
+    assert window.errors() == []
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("mass, where", [("1e308", "vehicle.mass_kg: "), ("1e-300", "")], ids=["1e308", "1e-300"])
+def test_a_mass_out_of_reason_is_refused_below_its_field_in_the_cores_words(window, mass, where):
+    window.open(PAGE, prefers_reduced_motion="reduce")
+    window.type("field-vehicle.mass_kg", mass)
+    told = "a result leaves the range of double precision; check inputs and units"
+    assert (window.text("field-vehicle.mass_kg-error"), window.text("banner")) == (told, where + told)
+    window.js("document.getElementById('step').click()")
+    assert window.text("time") == "0.00 s"
+    assert "NaN" not in window.js("return document.body.innerText") and window.errors() == []
+
+
+# ---- The command that prints what the page costs counts frames as they were, and the page has time to spare.
+
+FRAME_MS = 1000.0 / 60.0
+
+
+@pytest.mark.nightly
+def test_frames_that_the_display_showed_without_the_page_are_counted():
+    at_rest = [FRAME_MS * k for k in range(120)]
+    shown = [k for k in range(300) if k not in (50, 100, 101)]
+    found = figures_of(390, 21, at_rest, [FRAME_MS * k for k in shown], [2.0] * 290 + [30.0] * 7, 1.5)
+    assert (found.left_out, found.frames) == (3, len(shown) - 1)
+    assert found.worst_interval_ms == pytest.approx(3.0 * FRAME_MS)
+    assert found.rate_Hz == pytest.approx(60.0) and found.display_ms == pytest.approx(FRAME_MS)
+    assert (found.frame_ms, found.frame_99_ms, found.worst_frame_ms) == (2.0, 30.0, 30.0)
+    assert found.main_thread_ms == pytest.approx(1500.0 / len(shown))
+    assert "60.0 frames/s" in text_of(found) and "3 of 299 frames left out" in text_of(found)
+
+
+@pytest.mark.nightly
+def test_a_busy_machine_does_not_slow_the_display_down():
+    late = [FRAME_MS * k for k in range(120) if k % 3]  # a third of the frames at rest came late
+    assert figures_of(390, 21, late, late, [1.0] * 80, 0.1).display_ms == pytest.approx(FRAME_MS)
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not (PAGE.exists() and BROWSER and DRIVER), reason="needs the page, chromium and chromedriver")
+def test_the_page_needs_less_than_a_frame_of_the_processor_at_both_widths(capsys):
+    page_figures(PAGE, 1.0, "kuka_youbot", as_json=True)
+    found = json.loads(capsys.readouterr().out)
+    assert (found["bytes"], found["sha256"]) == (PAGE.stat().st_size, hashlib.sha256(PAGE.read_bytes()).hexdigest())
+    assert found["bits"].startswith("Same bits as the native core")
+    assert [(row["width"], row["vehicles"]) for row in found["widths"]] == [(390, 21), (1400, 21)]
+    for row in found["widths"]:
+        assert row["frames"] > 5
+        assert row["main_thread_ms"] < FRAME_MS  # of processor time, whatever else the machine does
+
+
+# ---- How the page is made: the same bytes at every run, and modules that the bundler cannot join are told.
+
+SOURCES = SOURCE_DIR / "web" / "page"
+BINDING = build_dir() / "npm/laconic/src"
+built = pytest.mark.skipif(not PAGE.exists(), reason="the page was not built: no clang with wasm-ld")
+
+
+def make(out: Path) -> bytes:
+    make_page(SOURCES, BINDING, SCENE_DIR, PAGE.parent / "native_hash.txt", out)
+    return out.read_bytes()
+
+
+@built
+def test_making_it_again_gives_the_same_bytes(tmp_path):
+    assert make(tmp_path / "again.html") == PAGE.read_bytes()
+
+
+@built
+def test_a_page_that_grows_beyond_its_promise_is_not_made(tmp_path, monkeypatch):
+    monkeypatch.setattr(page, "MOST_BYTES", 1000)
+    with pytest.raises(TooLarge, match=r"page\.html has \d+ bytes, 1000 at most"):
+        make(tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
+
+
+@built
+def test_it_names_no_other_address_than_its_own_data():
+    assert set(re.findall(r"\b(?:https?|wss?|ftp)://[\w.]+", PAGE.read_text(encoding="utf-8"))) == set()
+
+
+def bundled(folder: Path, **modules: str) -> str:
+    for name, text in modules.items():
+        (folder / f"{name}.js").write_text(text, encoding="utf-8")
+    return bundle(folder / "main.js", {"other": folder / "there.js"})
+
+
+def test_modules_are_joined_in_the_order_of_their_imports(tmp_path):
+    text = bundled(tmp_path, main='// a\nimport { b } from "./b.js";\nimport { t } from "other";\nb(t);\n',
+                   b='import { t } from "other";\nexport function b() {}\n', there="export const t = 1;\n")
+    assert text.split("\n") == ["const t = 1;", "", "function b() {}", "", "// a", "b(t);", ""]
+
+
+@pytest.mark.parametrize(("modules", "told"), [
+    ({"main": 'import { a } from "./a.js";\nconst a1 = a;\n', "a": "export const a = 1;\nconst a1 = 2;\n"},
+     "main.js: a1 is a name of a.js, too; rename one of them"),
+    ({"main": 'import { a } from "./a.js";\n', "a": 'import { m } from "./main.js";\nexport const a = 1;\n'},
+     "main.js: imports itself by way of a.js"),
+    ({"main": 'import a from "./a.js";\n'}, "main.js: 'import a from \"./a.js\";' is no import or export that"),
+    ({"main": 'export default 1;\n'}, "main.js: 'export default 1;' is no import or export that"),
+    ({"main": 'const end = "</script>";\n'}, "main.js: holds the end of a script element"),
+])
+def test_what_the_bundler_cannot_join_is_one_line(tmp_path, modules, told):
+    with pytest.raises(BadBundle, match=re.escape(told)):
+        bundled(tmp_path, **modules)

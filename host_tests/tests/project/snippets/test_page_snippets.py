@@ -33,8 +33,7 @@ OF_THE_READER = {"my.toml": "scenes/kuka_youbot.toml", "robot.urdf": ("docs/tuto
 """Files that pages call by these names: a file of the project, or a page's first snippet in a language."""
 KNOWN = "".join((SOURCE_DIR / "python" / name).read_text(encoding="utf-8") for name in (
     "requirements.in", "requirements-peers.in"))
-SLOW = {"scenes", "optimise", "control", "rig", "how-to", "play-odrive", "play-robomaster", "play-canopen",
-        "rig-wiring", "sweep", "enclosures"}
+SLOW = {"scenes", "control", "rig", "rig-ports", "how-to", "play-drives", "sweep", "accuracy"}
 """Pages whose snippets take more than some seconds."""
 PAGES_THAT_RUN = [pytest.param(page, id=str(page.relative_to(SOURCE_DIR)),
                                marks=[pytest.mark.nightly] if page.stem in SLOW else [])
@@ -84,6 +83,7 @@ def free_port() -> int:
 def start_beside(reader: Reader, snippet: Snippet, port: str) -> None:
     """Starts what keeps running, and waits until it says that its port is open."""
     reader.ports[port] = str(free_port())
+    Path("program.py").unlink(missing_ok=True)
     command, *rest = snippet.commands()
     words = shlex.split(reader.with_ports(command).removesuffix("&"))
     words[0] = words[0].replace("build/", f"{build_dir()}/")

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import os
+import platform
 import re
+import shutil
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import laconic
+from laconic.base.paths import SOURCE_DIR
 from laconic.core import load
 from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT
 
@@ -226,3 +233,126 @@ def test_the_example_of_the_page_prints_what_the_page_says(capsys):
     (code, printed), = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
     exec(compile(code, "batch.md", "exec"), {})  # noqa: S102
     assert capsys.readouterr().out == printed
+
+
+# ---- A batch after os.fork(): the threads stayed with the parent, so the child begins new ones.
+
+needs_batch_fork1 = pytest.mark.filterwarnings("ignore:.*fork")
+
+
+needs_batch_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+
+
+LONGEST_S = 60
+
+
+@needs_batch_fork
+@needs_batch_fork1
+def test_a_batch_runs_on_threads_in_a_child_and_in_its_parent() -> None:
+    batch = laconic.Batch(laconic.Vehicle.of(laconic.read_scene("robotino2")), 256, step_s=0.01)
+    batch.voltage_V[:] = np.linspace(-6.0, 6.0, 256)
+    batch.run(10, threads=2)
+    reader, writer = os.pipe()
+    if (child := os.fork()) == 0:
+        signal.alarm(LONGEST_S)  # a child that waits for ever fails the test
+        try:
+            batch.run(10, threads=2)
+            batch.run(10, threads=2)
+            os.write(writer, batch.x_m.tobytes())
+        finally:
+            os._exit(0)
+    os.close(writer)
+    batch.run(20, threads=2)
+    with os.fdopen(reader, "rb") as pipe:
+        found = np.frombuffer(pipe.read())
+    assert os.waitpid(child, 0)[1] == 0
+    assert found.tolist() == batch.x_m.tolist()
+
+
+# ---- The look for fused multiply-adds in the lanes' objects finds one where there is one, and passes over none.
+
+PRODUCT = """
+double fused(double a, double b, double c) { return a * b + c; }
+double apart(double a, double b) { return a * b; }
+"""
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64" or not shutil.which("cc") or not shutil.which("objdump"),
+                    reason="no C compiler for x86-64 or no objdump")
+@pytest.mark.parametrize(("options", "status"), [(["-mfma", "-ffp-contract=fast"], 1), (["-mavx2"], 0),
+                                                 (["-mfma", "-ffp-contract=off"], 0)])
+def test_a_fused_multiply_add_is_found_with_its_function(tmp_path: Path, options, status):
+    source, made = tmp_path / "product.c", tmp_path / "product.o"
+    source.write_text(PRODUCT, encoding="utf-8")
+    subprocess.run(["cc", "-O2", "-c", *options, str(source), "-o", str(made)], check=True)
+    found = looked_at("objdump", made)
+    assert found.returncode == status
+    assert ("product.o: fused has vfmadd" in found.stderr) is bool(status) and "apart" not in found.stderr
+
+
+def test_without_objdump_the_look_is_skipped_in_one_line(tmp_path: Path):
+    found = looked_at(str(tmp_path / "objdump"), tmp_path / "a.o")
+    assert (found.returncode, found.stdout.count("\n"), found.stderr) == (77, 1, "")
+    assert found.stdout.startswith("skipped: no objdump")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for objdump")
+def test_arms_names_of_fused_operations_are_known(tmp_path: Path):
+    objdump = tmp_path / "objdump"
+    lines = ("0 <f>:", " 0:\tfmadd d0, d1, d2, d0", " 4:\tfmla v0.2d, v1.2d, v2.2d", " 8:\tfmul d0, d1, d2")
+    objdump.write_text("\n".join(["#!/bin/sh", "cat <<END", *lines, "END", ""]), encoding="utf-8")
+    objdump.chmod(0o755)
+    found = looked_at(str(objdump), tmp_path / "a.o")
+    assert found.stderr.splitlines() == ["a.o: f has fmadd", "a.o: f has fmla"]
+
+
+def looked_at(objdump: str, made: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, str(SOURCE_DIR / "core_c/tests/bits/not_fused.py"), objdump, str(made)],
+                          capture_output=True, text=True, check=False)
+
+
+# ---- A lane becomes another vehicle while the batch lives: with that vehicle's bits, and refused where it cannot.
+
+def changed_robot(mass_kg: float = 8.0, real: str = "double", **more) -> laconic.Vehicle:
+    table = dict(laconic.read_scene("robotino2").vehicle)
+    return laconic.Vehicle({**table, "mass_kg": mass_kg, **more}, real)
+
+
+def test_a_changed_lane_has_the_bits_of_its_new_vehicle_and_the_others_keep_theirs():
+    batch = laconic.Batch([changed_robot(5.0 + lane) for lane in range(9)], step_s=0.01)
+    heavy = changed_robot(40.0)
+    batch.voltage_V[:] = [[4.0], [-1.0], [2.0]]
+    batch.change(3, batch.prepared(heavy))
+    batch.run(5)
+    for lane in range(9):
+        plant = (heavy if lane == 3 else changed_robot(5.0 + lane)).plant("auto", 0.01)
+        plant.run({"voltage_V": [4.0, -1.0, 2.0]}, steps=5)
+        assert (plant.pose.x_m, plant.pose.y_m) == (batch.x_m[lane], batch.y_m[lane])
+        assert plant.wheel_speeds().tobytes() == of_lane(batch, lane, plant)
+
+
+def of_lane(batch: laconic.Batch, lane: int, plant: laconic.Plant) -> bytes:
+    plant.restore(batch.state(lane), 0)
+    return plant.wheel_speeds().tobytes()
+
+
+def test_what_a_lane_cannot_become_is_refused_and_the_lane_stays():
+    batch, shared = laconic.Batch([changed_robot(), changed_robot(9.0)], step_s=0.01), laconic.Batch(changed_robot(), 2)
+    with pytest.raises(laconic.BadInput, match="lane: 1 shares its kind"):
+        shared.change(1, shared.prepared(changed_robot(9.0)))
+    crossed = laconic.Batch([changed_robot(), changed_robot(9.0)], step_s=0.01, kind_of=[1, 1])
+    with pytest.raises(laconic.BadInput, match="lane: 0 shares its kind"):
+        crossed.change(0, crossed.prepared(changed_robot(7.0)))
+    with pytest.raises(laconic.BadInput, match="another way"):
+        batch.change(1, batch.prepared(changed_robot(9.0), EXPLICIT))
+    with pytest.raises(laconic.BadInput, match="no laconic_batch_kind of this core; make it with batch.prepared"):
+        batch.change(1, changed_robot())
+    with pytest.raises(laconic.BadInput, match="vehicle: is of single precision"):
+        batch.prepared(changed_robot(real="single"))
+    with pytest.raises(laconic.BadInput, match="vehicle: has ground friction"):
+        batch.prepared(changed_robot(friction_coefficient=0.0, ground={"friction_coefficient": 0.4}))
+    batch.voltage_V[:] = 2.0
+    batch.run(3)
+    plant = changed_robot(9.0).plant("auto", 0.01)
+    plant.run({"voltage_V": [2.0] * 3}, steps=3)
+    assert plant.pose.heading_rad == batch.heading_rad[1]

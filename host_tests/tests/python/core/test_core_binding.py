@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+import re
+from decimal import Decimal
+from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 
-from laconic.core import REALS, load
+from laconic.core import REALS, Vehicle, load
+from laconic.core.given_array import AtLeast, real_array
 from laconic.errors import BadInput, Refused
-from laconic.scene import METHODS
+from laconic.scene import METHODS, read_scene
 from laconic.scene.methods import EXPLICIT
 
 WHEEL = {"kind": "omni", "x_m": 0.1, "y_m": 0.0, "axle_rad": 0.0}
@@ -200,3 +204,120 @@ def test_a_change_of_payload_keeps_velocity_and_pose_of_the_bodys_origin():
     assert (after.origin_x_m, after.origin_y_m) == pytest.approx((before.origin_x_m, before.origin_y_m), abs=1e-15)
     assert plant.body_velocity()[1] == pytest.approx(rate, rel=1e-14)
     assert (after.x_m, after.y_m) != (before.x_m, before.y_m)
+
+
+# ---- What is no input or no vehicle is refused in one line that names it; nothing is written beside it.
+
+@pytest.mark.parametrize("values, message", [
+    ({"body_force_N": [1, 2, 3]}, "body_force_N: .* of which there are 2"),
+    ({"body_force_N": [1]}, "body_force_N: .* of which there are 2"),
+    ({"world_force_N": [1, 2, 3, 4]}, "world_force_N: .* of which there are 2"),
+    ({"voltage_V": [1] * 17}, "voltage_V: .* of which there are 16"),
+    ({"voltage_V": [[1, 2], [3, 4]]}, "voltage_V: "),
+    ({"voltage_V": "5"}, "voltage_V: '5' is no number"),
+    ({"voltage_V": None}, "voltage_V: None is no number"),
+    ({"voltage_V[17]": 1}, r"voltage_V\[17\]: there is no such item; give 1 to 16"),
+    ({"voltage_V[0]": 1}, r"voltage_V\[0\]: there is no such item"),
+    ({"voltage_V[01]": 1}, r"voltage_V\[01\]: there is no such item"),  # one spelling each, so that none is given twice
+    ({"voltage_V[\u0661]": 1}, r"voltage_V\[\u0661\]: there is no such item"),
+    ({"voltage_V[1": 1}, r"voltage_V\[1: there is no such item"),
+    ({"voltage_V[1]": [1, 2]}, r"voltage_V\[1\]: .* of which there are 1"),
+    ({"body_moment_Nm[2]": 1}, r"body_moment_Nm\[2\]: there is no such item; give body_moment_Nm$"),
+    ({"voltag_V": [1]}, "voltag_V: there is no such input; did you mean voltage_V?"),
+    (np.zeros(3), r"input: a row has [0-9]+ numbers, this array has the shape \(3,\)")])
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_what_is_no_input_is_refused_by_its_name(real: str, values: Any, message: str) -> None:
+    with pytest.raises(BadInput, match=message):
+        load(real).input(values)
+
+
+BEYOND = r"voltage_V\[3\] does not match the vehicle's 2 wheels; use voltage_V\[1\] to voltage_V\[2\]"
+LIST = "does not match the vehicle's 2 wheels; .*, or a list of 2"
+
+
+@pytest.mark.parametrize("values, message", [
+    ({"voltage_V[3]": 3.0}, BEYOND), ({"voltage_V[3]": 0.0}, BEYOND),
+    ({"voltage_V": 3.0}, rf"voltage_V: 3.0 {LIST}"), ({"voltage_V": [3.0]}, rf"voltage_V: \[3.0\] {LIST}"),
+    ({"axle_torque_Nm": [3.0, 3.0, 9.0]}, rf"axle_torque_Nm: \[3.0, 3.0, 9.0\] {LIST}"),
+    ({"voltage_V": [1.0] * 16}, rf"voltage_V: .* {LIST}"), ({"voltage_V": []}, rf"voltage_V: \[\] {LIST}")])
+def test_python_refuses_inputs_of_wheels_that_are_not_there_and_lists_that_are_not_whole(
+        values: Any, message: str) -> None:
+    robot = Vehicle.of(read_scene("turtlebot3_burger"))
+    plant = robot.plant()
+    entrances = (plant.run, plant.outputs, plant.wheel_torques, plant.sensors().run, plant.sensors().read,
+                 lambda held: robot.derivative(inputs=held), lambda held: robot.linearise(inputs=held),
+                 lambda held: robot.core.input_row(held, 2), lambda held: robot.core.input(held, 2))
+    for entrance in entrances:
+        with pytest.raises(BadInput, match=message):
+            entrance(values)
+    assert plant.steps == 0
+
+
+def test_a_remedy_names_the_wheels_that_there_are() -> None:
+    for spelled in ("voltage_V[01]", "voltage_V[4]", "voltage_V[17]"):
+        with pytest.raises(BadInput, match=r"give 1 to 3$|use voltage_V\[1\] to voltage_V\[3\]$"):
+            Vehicle.of(read_scene("robotino2")).derivative(inputs={spelled: 1.0})
+    one = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.1, "wheel": [{"kind": "omni", "x_m": 0.1}]}
+    text = r"voltage_V: \[1.0, 2.0\] does not match the vehicle's 1 wheel; use voltage_V\[1\], or a list of 1$"
+    with pytest.raises(BadInput, match=text):
+        Vehicle(one).derivative(inputs={"voltage_V": [1.0, 2.0]})
+
+
+def test_a_ready_made_input_may_not_act_on_wheels_that_are_not_there() -> None:
+    robot = Vehicle.of(read_scene("turtlebot3_burger"))
+    plant = robot.plant()
+    held = robot.core.input({"voltage_V[3]": 3.0})  # the core alone knows no vehicle
+    samples = np.zeros((1, 3, robot.core.input_length))
+    samples[0, 2, robot.core.input_offset("voltage_V[3]")] = 1.0
+    for entrance in (lambda: plant.run(held), lambda: plant.sensors().run(held),
+                     lambda: plant.run_sampled(samples), lambda: plant.sensors().run_sampled(samples)):
+        with pytest.raises(BadInput, match=BEYOND):
+            entrance()
+    with pytest.raises(BadInput, match="voltage_V: has one number for each wheel, and without wheel_count"):
+        robot.core.input({"voltage_V": [1.0, 2.0]})
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_numbers_of_an_input_go_where_their_names_state(real: str) -> None:
+    held = load(real).input({"voltage_V": np.array([1, 2, 3]), "axle_torque_Nm[2]": 7, "body_moment_Nm": 4,
+                             "body_force_N": (5, 6)}, 3)
+    assert list(held.voltage_V)[:4] == [1, 2, 3, 0] and held.body_moment_Nm == 4 and list(held.body_force_N) == [5, 6]
+    assert list(held.axle_torque_Nm)[:3] == [0, 7, 0] and not any(held.world_force_N)
+
+
+@pytest.mark.parametrize("data, message", [
+    ({"mas_kg": 1.0}, "vehicle.mas_kg: unknown key; did you mean mass_kg?"),
+    ({"wheel": [{"kind": "omnni"}]}, "vehicle.wheel[1].kind: there is no 'omnni'; did you mean omni?")])
+def test_what_is_no_vehicle_is_refused_by_its_name(data: Any, message: str) -> None:
+    with pytest.raises(BadInput, match=re.escape(message)):
+        load("double").vehicle(data)
+
+
+# ---- An array that a program gives: real numbers of the shape that is asked for, else one line with name, shape,
+# unit.
+
+def test_what_fits_is_taken_without_a_copy_and_other_types_are_converted():
+    there = np.arange(6.0).reshape(2, 3)
+    assert np.shares_memory(real_array("a", there, (2, 3)), there)
+    assert real_array("a", [[1, 2, 3]], ("samples", 3)).dtype == float
+    assert real_array("a", np.float32([1, 2]), (AtLeast(2),), dtype=np.float64).tolist() == [1.0, 2.0]
+    assert real_array("a", there.T, (3, 2)).flags.c_contiguous
+    assert real_array("a", 2, ()).shape == ()
+    assert real_array("a", [], (0,)).shape == (0,)
+
+
+@pytest.mark.parametrize("given", [None, "x", [1, None], [1j, 2], [True, False], [[1], [1, 2]], [1], [1, 2, 3], {1: 2},
+                                   [Decimal(1), Decimal(2)], [10**400, 1], object()])
+def test_what_is_no_such_array_is_refused_by_its_name(given):
+    with pytest.raises(BadInput, match=r"^volts: .* does not fit; give real numbers of shape \(2,\) in V$"):
+        real_array("volts", given, (2,), "V")
+
+
+def test_the_first_place_that_is_not_finite_is_named():
+    with pytest.raises(BadInput, match=r"^a\[2, 1\]: nan is not finite; give finite numbers in m$"):
+        real_array("a", [[1, 2], [np.nan, np.inf]], (2, 2), "m")
+    assert np.isnan(real_array("a", [np.nan], (1,), is_finite=False)[0])
+
+
+def test_a_number_too_large_for_single_precision_becomes_infinite_without_a_warning():
+    assert real_array("a", [1e300], (1,), dtype=np.float32)[0] == np.inf

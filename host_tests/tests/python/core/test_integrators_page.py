@@ -43,6 +43,18 @@ def each(function: Any) -> Any:
     return lambda x, y: sp.Matrix([function(p, q) for p, q in zip(x, y, strict=True)])
 
 
+def remembered(weights: Any) -> Any:
+    """Weights that are computed once for the same numbers."""
+    results: dict[tuple[Any, ...], sp.Matrix] = {}
+
+    def known(i: int, k: int, a: sp.Matrix, to: Any) -> sp.Matrix:
+        key = (i, k, *a, to)
+        if key not in results:
+            results[key] = weights(i, k, a, to)
+        return results[key]
+    return known
+
+
 @dataclass
 class Case:
     """A random robot, its state and what acts on it, in the core; and the names that the page's formulas use."""
@@ -98,6 +110,7 @@ class Case:
         """The formulas run, and ζ⁺ with the mean of ζ over the step; but for eighth order displacement and yaw."""
         names = self.names()
         exec(formulas(page), names)
+        names["weights"] = remembered(names["weights"])  # the same in each of its 32 sweeps
         base, samples = names[METHODS[self.method]], (names["b0"], names["bm"], names["b1"])
         if METHODS[self.method] not in SECOND_ORDER:
             delta, mean, slope = base(*samples)

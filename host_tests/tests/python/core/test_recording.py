@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -13,12 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from laconic.base.paths import built
 from laconic.core.plant import Plant
 from laconic.scene import Scene, read_scene
 from laconic.scene.inputs import CHUNK
 from laconic.scene.signals import OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, signal_names
 from laconic.scene.table import tomllib
 from laconic.simulation import input_signals, simulate
+from laconic.tools.report.counting import cachegrind_present, instructions_of
 
 SCENES = ("robotino2", "turtlebot3_burger", "paper_differential_drive")
 TABLE = '[[input]]\nsignal = "body_force_N[1]"\nkind = "table"\nt_s = [0.0, 1.0]\nvalue = [0.0, 2.0]\n'
@@ -137,3 +140,46 @@ def test_reading_and_driving_steps_grow_with_their_number_alone(tmp_path, capsys
             print(f"\n{instants} instants: read and driven in {(time.thread_time() - began) / toml_s:.2f} times "
                   f"the {toml_s:.2f} s of the TOML reader alone")
     assert counts[2000] < 4.0 * counts[500]
+
+
+# ---- What a recorded row costs beside a step, in instructions: the same on every run.
+
+LEAST, MOST = 300, 900  # steps: what a count of one run has in common with another's cancels
+LIMIT = 20.0              # rows cost at most so many steps
+
+needs_cachegrind = pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
+
+
+@cache
+def cost(kind: str, every: int, watch: int) -> float:
+    """Instructions for each step, rows and watch included."""
+    program = str(built("bin/count_record"))
+    least, most = (instructions_of([program, kind, str(every), str(watch), str(steps)]) for steps in (LEAST, MOST))
+    return (most - least) / (MOST - LEAST)
+
+
+@needs_cachegrind
+@pytest.mark.parametrize(("watch", "what"), [(0, "without the ground"), (1, "with the no-slip margin")])
+def test_a_row_costs_at_most_twenty_steps(capsys, watch, what):
+    step = cost("held", 0, 0)
+    row = cost("held", 1, watch) - step
+    with capsys.disabled():
+        print(f"\na row {what}: {row:.0f} instructions, {row / step:.1f} steps of {step:.0f}")
+    assert row / step < LIMIT
+
+
+@needs_cachegrind
+def test_watching_the_ground_costs_at_most_twenty_steps_and_nothing_where_it_is_off(capsys):
+    step, watched = cost("held", 0, 0), cost("held", 0, 2)
+    with capsys.disabled():
+        print(f"\na watched step: {watched / step:.1f} steps; unwatched: {cost('held', 0, 1) / step:.3f}")
+    assert watched / step < LIMIT
+    assert cost("held", 0, 1) == pytest.approx(step, rel=0.01)
+
+
+@needs_cachegrind
+def test_a_sampled_step_costs_at_most_twenty_held_ones(capsys):
+    step, sampled = cost("held", 0, 0), cost("sampled", 0, 0)
+    with capsys.disabled():
+        print(f"\na sampled step: {sampled / step:.1f} held ones")
+    assert sampled / step < LIMIT

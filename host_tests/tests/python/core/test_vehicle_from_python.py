@@ -10,6 +10,7 @@ import pytest
 
 import laconic
 from laconic.base.paths import SCENE_DIR
+from laconic.scene import rigid_scene_names
 from laconic.scene.methods import EXPLICIT
 
 if sys.version_info >= (3, 11):
@@ -132,7 +133,7 @@ def bits(vehicle: laconic.Vehicle) -> bytes:
     return bytes(vehicle.core.ffi.buffer(vehicle.c))
 
 
-@pytest.mark.parametrize("name", laconic.scene_names())
+@pytest.mark.parametrize("name", rigid_scene_names())
 def test_a_vehicle_takes_the_table_of_every_scenes_file_as_it_is(name: str) -> None:
     tables = tomllib.loads((SCENE_DIR / f"{name}.toml").read_text(encoding="utf-8"))
     ground = {"ground": tables["ground"]} if "ground" in tables else {}

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from laconic import BadInput, Refused
-from laconic.core.binding import load
+from laconic.base.paths import SOURCE_DIR, built
+from laconic.core import load
 from laconic.core.derivatives import StepDerivatives
 from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, EXPLICIT_8, STIFF, STIFF_4, STIFF_8
+from laconic.tools.report.counting import cachegrind_present, instructions_of
 from laconic.tools.verify.exact import exact_gauss
 from laconic.tools.verify.exact.trials import (
     KINDS,
@@ -26,6 +28,7 @@ from laconic.tools.verify.exact.trials import (
     trials,
 )
 from references.derivatives.adjoints import adjoint_error
+from references.derivatives.c_table import cases, found_numbers, given_numbers
 
 TRIALS = len(KINDS) * len(METHODS)
 TOLERANCE = 1e-11
@@ -172,3 +175,48 @@ def test_rounds_that_converge_late_are_derived_at_the_solution(monkeypatch, damp
             more.setattr(exact_gauss, "MOST_ROUNDS", 32)
             assert error(difference(trial, plant, along), found, along) > 1e-13
     assert adjoint_error(random, trial, plant) <= 1e-13
+
+
+# ---- What all Jacobians of a step cost beside the step, in instructions: the same on every run.
+
+FEW, MANY = 100, 300  # calls: what a count of one run has in common with another's cancels
+LIMIT = 6.0           # steps
+LIMITS = {STIFF_8: 6.6}  # rounds at four nodes, in which a direction costs as much as the step
+
+
+def cost(method: str, what: str) -> float:
+    """Instructions of one step, or of one answer about it."""
+    program = str(built("bin/count_derivatives"))
+    few, many = (instructions_of([program, method, what, str(calls)]) for calls in (FEW, MANY))
+    return (many - few) / (MANY - FEW)
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
+@pytest.mark.parametrize("method", METHODS)
+def test_all_jacobians_by_state_and_input_cost_no_more_steps_than_the_limit(capsys, method):
+    step, jacobian = cost(method, "step"), cost(method, "jacobian")
+    with capsys.disabled():
+        print(f"\n{method}: {step:.0f} instructions a step, its Jacobians {jacobian:.0f}, {jacobian / step:.2f} steps")
+    assert jacobian / step <= LIMITS.get(method, LIMIT)
+
+
+# ---- The table of exact steps for the core's C tests is the one that its maker gives.
+
+TABLE = SOURCE_DIR / "core_c/tests/support/exact_steps.h"
+RECKONED = (0, 5, 13)  # cases whose results are computed once more
+
+
+def words(text: str) -> str:
+    return " ".join(text.split())
+
+
+def test_the_committed_table_is_that_of_its_maker():
+    table, core = words(TABLE.read_text(encoding="utf-8")), load("double")
+    every = list(cases())
+    for number, trial in enumerate(every):
+        assert words(f"{{{', '.join(given_numbers(trial))}}}, /* {trial.kind} */") in table
+        if number in RECKONED:
+            rows = [f"{{{', '.join(found_numbers(core, trial, method))}}}" for method in METHODS]
+            assert words(", ".join(rows)) in table
+    assert f"#define EXACT_CASES {len(every)}" in table

@@ -169,8 +169,8 @@ def test_a_watched_step_costs_at_most_three_fifths_more(capsys, method):
     program = str(built("bin/count_estimate"))
 
     def cost(window):
-        few, many = (instructions_of([program, method, str(window), str(steps)]) for steps in (1000, 3000))
-        return (many - few) / 2000
+        few, many = (instructions_of([program, method, str(window), str(steps)]) for steps in (320, 960))
+        return (many - few) / 640
 
     plain, watched = cost(0), cost(16)
     with capsys.disabled():

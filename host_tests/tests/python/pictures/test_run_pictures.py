@@ -10,10 +10,14 @@ import pytest
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
+import laconic
+from laconic.core import load
 from laconic.pictures import plotting
 from laconic.pictures.curves import MOST_CURVES, share_zero, stripes
+from laconic.pictures.method_style import METHOD_STYLES, style_of
 from laconic.pictures.plotting import figure, simulation_picture
 from laconic.scene import METHODS, read_scene
+from laconic.scene.methods import EXACT_4, EXPLICIT
 from laconic.simulation import Trajectory, simulate, usual_signals
 from laconic.tools.demo import pictures as demo_pictures
 from laconic.tools.demo.work import Point
@@ -130,3 +134,47 @@ def test_what_the_ground_cannot_give_is_marked_where_and_when_it_happens(tmp_pat
 def test_a_run_that_holds_has_no_mark(tmp_path, drawn):
     simulation_picture(ring(tmp_path, 4, "0.2", "friction_coefficient = 0.9"), tmp_path / "run.png")
     assert drawn[0].get_supxlabel() == ""
+
+
+# ---- laconic.plot: the picture of a run from a program.
+
+@pytest.fixture(scope="module")
+def run():
+    return laconic.simulate(laconic.read_scene("s1").with_run(duration_s=0.2))
+
+
+def test_a_run_is_drawn_and_written(run, tmp_path):
+    picture = laconic.plot(run, tmp_path / "run.png")
+    assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
+    assert {axes.get_xlabel() for axes in picture.axes} >= {"x [m]", "time [s]"}
+
+
+def test_a_run_without_the_usual_signals_is_refused():
+    run = laconic.simulate(laconic.read_scene("s1").with_run(duration_s=0.2), ("x_m",))
+    with pytest.raises(laconic.BadInput, match=r"run: has not kept nu_rad_per_s\[1\]; simulate without"):
+        laconic.plot(run)
+
+
+def test_a_name_that_is_no_picture_is_refused_and_leaves_no_figure_open(run, tmp_path):
+    before = plt.get_fignums()
+    with pytest.raises(laconic.BadInput, match=r"choose a name that ends in .png, .svg or .pdf"):
+        laconic.plot(run, tmp_path / "run.txt")
+    assert plt.get_fignums() == before
+
+
+# ---- A method is drawn the same in every picture.
+
+def test_every_method_of_the_core_has_a_colour_and_a_marker_of_its_own():
+    assert set(METHOD_STYLES) == set(METHODS) == set(load("double").method_names)
+    assert len({style.colour for style in METHOD_STYLES.values()}) == len(METHOD_STYLES)
+    assert len({style.marker for style in METHOD_STYLES.values()}) == len(METHOD_STYLES)
+
+
+def test_what_auto_lies_upon_stays_visible():
+    assert style_of("auto")["markerfacecolor"] == "none"
+    assert style_of("auto")["markersize"] > style_of(EXACT_4)["markersize"]
+
+
+def test_what_a_caller_gives_replaces_the_table():
+    assert style_of(EXPLICIT, label=None, linestyle="--") == {
+        "color": "#d1495b", "marker": "s", "markersize": 5.0, "label": None, "linestyle": "--"}

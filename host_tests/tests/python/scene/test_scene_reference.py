@@ -22,6 +22,26 @@ WORDS, OF_METHODS = descriptions(SOURCE_DIR)
 ROWS = list(rows(WORDS, OF_METHODS))
 PATHS = {f"{row.table}.{row.key}" if row.table else row.key for row in ROWS}
 RULED = [key for key in KEYS.values() if key.rule is not None]
+MOTOR_OF_A_HINGE = """
+[vehicle]
+mass_kg = 1.0
+yaw_inertia_kgm2 = 0.1
+wheel_radius_m = 0.05
+[[vehicle.body]]
+name = "arm"
+hinge = "motor"
+hinge_x_m = 0.1
+mass_kg = 0.2
+yaw_inertia_kgm2 = 0.01
+[vehicle.body.motor]
+resistance_ohm = 1.0
+torque_constant_Nm_per_A = 0.1
+back_emf_Vs_per_rad = 0.1
+gear_ratio = 10.0
+[run]
+duration_s = 1.0
+step_s = 0.1
+"""
 VEHICLE = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
 
 
@@ -47,7 +67,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> set[str]:
 def test_every_key_that_the_reader_knows_is_in_the_reference_and_no_other(asked: set[str], tmp_path: Path) -> None:
     page = tmp_path / "page.toml"
     page.write_text(whole_example(), encoding="utf-8")
-    for name in (*scene_names(), page):
+    hinge = tmp_path / "hinge.toml"
+    hinge.write_text(MOTOR_OF_A_HINGE, encoding="utf-8")
+    for name in (*scene_names(), page, hinge):
         read_scene(name)
     tables = {table.removesuffix("[#]") for table in TABLES} - {""}
     assert asked - tables == PATHS
@@ -79,7 +101,8 @@ def test_every_key_of_every_scene_that_comes_with_the_project_is_on_the_page(nam
 
 
 def _head(table: str) -> str:
-    return "Top" if not table else f"`[[{table[:-3]}]]`" if table.endswith("[#]") else f"`[{table}]`"
+    plain = table.replace("[#]", "")
+    return "Top" if not table else f"`[[{plain}]]`" if table.endswith("[#]") else f"`[{plain}]`"
 
 
 def test_every_row_says_what_its_key_is() -> None:

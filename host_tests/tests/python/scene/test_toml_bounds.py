@@ -42,8 +42,10 @@ READERS: dict[str, Callable[[Path], Any]] = {
     "a map of a bus": lambda path: map_file.read_map(path, 4)}
 
 
-@pytest.mark.parametrize("reader", READERS.values(), ids=READERS)
-@pytest.mark.parametrize("text, message", TOO_MUCH.values(), ids=TOO_MUCH)
+# The readers share one function: what costs seconds to read is read by the first alone, at night by all.
+@pytest.mark.parametrize("text, message, reader", [
+    pytest.param(*case, reader, id=f"{name}-{who}", marks=[pytest.mark.nightly] if name == "tables" and k > 0 else [])
+    for name, case in TOO_MUCH.items() for k, (who, reader) in enumerate(READERS.items())])
 def test_every_reader_refuses_what_would_fill_the_memory(tmp_path: Path, reader: Callable[[Path], Any], text: str,
                                                          message: str) -> None:
     path = tmp_path / "deep.toml"

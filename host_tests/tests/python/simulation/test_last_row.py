@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from laconic import RunRefused, build_scene, read_scene, simulate
 from laconic.cli.main import run
+from laconic.core.grip import newtons
+from laconic.scene.table import read_toml
+from laconic.simulation.csv_text import ROWS_AT_ONCE, csv_text
 from scene_text import wheel
 
 ROBOT = """
@@ -138,3 +145,123 @@ def test_refused_with_field_and_remedy(tmp_path, capsys, what):
     line = refusal(path, capsys)
     assert [word for word in words if word not in line] == []
     assert not line.rstrip().endswith(":")
+
+
+# ---- Outputs beyond the range of numbers end a run, as a refused step does: no row, file or word holds NaN.
+
+SIGNALS = ("no_slip_margin_N", "wheel_reaction_N", "wheel_torque_Nm", "x_m", "voltage_V[1]")
+HUGE = 1.7e308
+
+
+def tables(at_s: float, every_s: float | None) -> dict[str, object]:
+    """Robotino 2 with voltages that no torque can be of, from an instant on."""
+    found = read_toml(read_scene("robotino2").path).plain()
+    found["run"] = {"duration_s": 1.0, "step_s": 0.01}
+    found["outputs"] = {} if every_s is None else {"every_s": every_s}
+    found["input"] = [{"signal": f"voltage_V[{i}]", "kind": "steps", "t_s": [0.0, at_s], "value": [3.0, HUGE]}
+                      for i in (1, 2, 3)]
+    return found
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("every_s", [None, 0.1, 0.3])
+@pytest.mark.parametrize(("at_s", "words"), [(1.0, "at t = 1 s: outputs: a result leaves the range of double"),
+                                             (0.5, "at t = 0.5 s: run.step_s: a result leaves the range of double")])
+def test_a_run_ends_before_a_row_that_is_out_of_range(at_s: float, words: str, every_s: float | None) -> None:
+    with pytest.raises(RunRefused) as refused:
+        simulate(build_scene(tables(at_s, every_s)), SIGNALS, estimated=True)
+    assert words in str(refused.value)
+    found = refused.value.run
+    rows = len(found.time_s)
+    assert rows > 1 and found.steps == round(100 * at_s) and found.time_s[-1] < at_s
+    assert all(len(column) == rows and np.isfinite(column).all() for column in found.columns.values())
+    assert all(len(column) == rows for column in found.error_columns.values())
+    assert not found.columns["voltage_V[1]"].max() > 3.0
+
+
+def test_a_run_whose_kept_signals_are_in_range_goes_to_its_end() -> None:
+    found = simulate(build_scene(tables(1.0, None)), ("x_m", "voltage_V[1]"))
+    assert (found.time_s[-1], found.columns["voltage_V[1]"][-1]) == (1.0, HUGE)
+
+
+def test_what_the_command_prints_and_writes_holds_no_nan(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, out = tmp_path / "s.toml", tmp_path / "run.csv"
+    text = read_scene("robotino2").path.read_text(encoding="utf-8").split("[[input]]")[0]
+    path.write_text(text + f"""
+[[input]]
+signal = "voltage_V[1]"
+kind = "steps"
+t_s = [0.0, 1.0]
+value = [3.0, {HUGE}]
+[run]
+duration_s = 1.0
+step_s = 0.01
+[outputs]
+signals = ["no_slip_margin_N", "x_m"]
+""", encoding="utf-8")
+    assert run(["simulate", str(path), "--out", str(out), "--errors", "--json"]) == 1
+    told = capsys.readouterr()
+    assert "nan" not in (told.out + told.err + out.read_text()).lower()
+    assert math.isfinite(json.loads(told.out)["final"]["no_slip_margin_N"])
+
+
+def test_a_force_that_is_no_number_is_told_in_words() -> None:
+    assert newtons(math.nan) == newtons(-math.inf) == "beyond all numbers"
+
+
+# ---- CSV text reads back as the same numbers, every bit.
+
+def read_back(table: np.ndarray) -> np.ndarray:
+    lines = "".join(csv_text(table)).splitlines()
+    return np.array([[float(cell) for cell in line.split(",")] for line in lines])
+
+
+def assert_same_bits(table: np.ndarray) -> None:
+    assert read_back(table).view(np.uint64).tolist() == table.view(np.uint64).tolist()
+
+
+def test_random_bits_read_back_as_they_were():
+    bits = np.random.default_rng(1).integers(0, 2**64, (ROWS_AT_ONCE + 5, 4), dtype=np.uint64)
+    numbers = bits.view(np.float64)
+    assert_same_bits(np.where(np.isfinite(numbers), numbers, 1.0))
+
+
+@pytest.mark.parametrize("numbers", [
+    [0.0, -0.0, 5e-324, -1e-323, 2.2250738585072014e-308, 1.7976931348623157e308, 1e22, 1e23, 0.1, 1 / 3],
+    [10.0**k for k in range(-323, 309)], [2.0**k for k in range(-1074, 1024)], [k * 1e-3 for k in range(2000)]],
+    ids=["special", "tens", "twos", "times"])
+def test_numbers_at_every_border_read_back_as_they_were(numbers):
+    assert_same_bits(np.array(numbers)[:, None])
+
+
+def test_no_number_has_more_digits_than_it_needs():
+    assert "".join(csv_text(np.array([[0.1, 2.5, 1.0 / 3.0, -3.0]]))) == "0.1,2.5,0.3333333333333333,-3.0\n"
+
+
+def test_what_is_no_finite_number_is_written_as_python_writes_it():
+    assert "".join(csv_text(np.array([[math.nan, 1.5], [-math.inf, math.inf]]))) == "nan,1.5\n-inf,inf\n"
+
+
+def test_rows_have_commas_between_and_line_ends_after():
+    assert "".join(csv_text(np.array([[1.0, 2.5], [0.25, -3.0]]))) == "1.0,2.5\n0.25,-3.0\n"
+    assert not list(csv_text(np.zeros((0, 3))))
+
+
+def test_a_number_more_is_no_python_call_more():
+    def calls(rows: int) -> int:
+        count = 0
+
+        def note(*_: object) -> None:
+            nonlocal count
+            count += 1
+
+        table = np.full((rows, 10), 0.1)
+        sys.setprofile(note)
+        try:
+            list(csv_text(table))
+        finally:
+            sys.setprofile(None)
+        return count
+
+    calls(1)
+    assert calls(4000) == calls(10)

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from laconic.base.paths import SCENE_DIR, scene_names
+from laconic.base.paths import SCENE_DIR
 from laconic.cli.main import run
 from laconic.core.grip import Grip, GripEvent
 from laconic.fmu import make_fmu
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 from laconic.simulation import simulate
 from laconic.tools.demo.fmu_rows import fmu_rows
 
@@ -174,7 +174,7 @@ def test_wheels_that_roll_on_ground_with_friction_have_not_slipped(
 ON_PURPOSE = "example_two_wheel_sizes"
 
 
-@pytest.mark.parametrize("name", [name for name in scene_names() if name != ON_PURPOSE])
+@pytest.mark.parametrize("name", [name for name in rigid_scene_names() if name != ON_PURPOSE])
 def test_the_ground_gives_what_a_scene_of_the_project_needs(name: str) -> None:
     found = simulate(read_scene(name))
     assert found.grip is None or found.grip.warning() == ""

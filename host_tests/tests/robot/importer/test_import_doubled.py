@@ -77,8 +77,26 @@ def test_a_joint_on_a_tilted_axle_is_said_to_be_no_wheel(tmp_path: Path) -> None
     assert any("joint third turns round on an axle 16.7° from level, and is no wheel" in each for each in found.remarks)
 
 
+def test_joints_of_one_kind_that_are_no_wheels_share_a_line(tmp_path: Path) -> None:
+    others = [wheel("third", "base", "-0.2 0 -0.05", axis="0 1 0.3"),
+              wheel("fourth", "base", "0.2 0 -0.05", axis="1 0 0.3"), wheel("up", "base", "0.1 0 0.3"),
+              wheel("higher", "base", "0.1 0 0.5")]
+    found = imported(tmp_path, robot(link("base", BASE, BOX), *WHEELS, *others))
+    assert ("joints turn round on axles that are not level, and are no wheels: third (16.7°), fourth (16.7°); a "
+            "wheel's axle is level") in found.remarks
+    assert ("joints turn on level axles above the ground, and are no wheels: up (350 mm), higher (550 mm); --wheel "
+            "JOINT for each wheel would say otherwise") in found.remarks
+
+
 def test_hinges_within_limits_are_named_where_there_is_no_wheel(tmp_path: Path) -> None:
     hinge = joint("jl", "revolute", "base", "flap", "0 0.2 0", "0 0 0", "0 1 0",
                   '<limit lower="-1" upper="1" effort="1" velocity="1"/>')
     with pytest.raises(BadInput, match=r"turns round on a level axle .* \(jl: within limits\)"):
         imported(tmp_path, robot(link("base", BASE, BOX), link("flap", inertial(0.1, (1e-3,) * 3)), hinge))
+
+
+def test_wheels_that_are_fixed_or_turn_upright_are_named_where_there_is_no_wheel(tmp_path: Path) -> None:
+    still = [each.replace('type="continuous"', 'type="fixed"').replace("_link", "_wheel") for each in WHEELS]
+    mast = link("top") + joint("mast", "continuous", "base", "top", axis="0 0 1")
+    with pytest.raises(BadInput, match=r"z up\) \(left, right: fixed; mast: on an upright axle\), so there is no"):
+        imported(tmp_path, robot(link("base", BASE, BOX), *still, mast))

@@ -60,7 +60,11 @@ WATCHER = ('<gazebo><plugin name="joint_state_publisher" filename="libx.so"><joi
      STEERS + "trail 40 mm, commanded by velocity interface of ros2_control)"),
     (0.04, "continuous", "", TRANSMISSION, STEERS + "trail 40 mm, commanded by transmission t)"),
     (0.04, "continuous", "", PLUGIN, STEERS + "trail 40 mm, commanded by plugin ackermann)"),
-    (0.02, "revolute", LIMIT.format(-0.5, 0.5), "", STEERS + "trail 20 mm, turns within limits of 57°)"),
+    (0.0, "revolute", LIMIT.format(-0.5, 0.5), "", STEERS + "zero trail)"),
+    (0.02, "revolute", LIMIT.format(-0.5, 0.5), "",
+     "caster front swivels freely about turn, without drag (trail 20 mm, no command, turns within limits of 57°)"),
+    (0.02, "revolute", LIMIT.format(-0.5, 0.5), control(POSITION.format("turn")),
+     STEERS + "trail 20 mm, commanded by position interface of ros2_control)"),
     (0.04, "continuous", "", control(STATE.format("turn")),
      "caster front swivels freely about turn, without drag (trail 40 mm, no command)"),
     (0.04, "continuous", "", WATCHER, "caster front swivels freely about turn, without drag (trail 40 mm, no command)"),
@@ -80,7 +84,9 @@ def test_a_steered_wheel_that_drives_is_named_as_both_and_those_that_only_roll_a
     found, scene = imported(tmp_path, text)
     assert "commanded by position interface of ros2_control; driven: commanded by velocity" in support_words(found)
     assert [each.get("driven") for each in scene.vehicle["wheel"]] == [False, False]
-    assert "front drives the robot, and left, right only roll; that drive is left out" in found.remarks
+    assert ("front drives the robot and is not modelled as a wheel, as it is steered or slides: a support carries its "
+            "load, its steering is held straight, and a force on the body takes the place of its drive; left, right "
+            "only roll") in found.remarks
     assert {each.signal for each in scene.inputs} == {"body_force_N[1]", "body_moment_Nm"}
     assert any("this force takes the place of front and pushes ahead with about 0.3" in each
                for each in found.assumptions)
@@ -172,3 +178,18 @@ def test_a_joint_of_two_axes_is_that_of_a_steered_wheel(tmp_path: Path) -> None:
 def test_a_kingpin_that_is_inclined_steers(tmp_path: Path) -> None:
     inclined = swivelling(0.0, "revolute", LIMIT.format(-0.5, 0.5)).replace('axis xyz="0 0 1"', 'axis xyz="0 0.25 1"')
     assert "front is steered by turn" in support_words(imported(tmp_path, inclined)[0])
+
+
+def test_wheels_without_mass_that_are_only_seen_stand_for_others(tmp_path: Path) -> None:
+    """As in the model of a car by one front and one rear wheel, which alone are commanded."""
+    seen = ('<visual><origin rpy="1.5707963267948966 0 0"/><geometry><cylinder radius="0.05" length="0.01"/></geometry>'
+            "</visual>")
+    virtual = link("virtual", seen) + joint("virtual_joint", "continuous", "base", "virtual", "0 0 -0.05")
+    found, scene = imported(tmp_path, robot(TWO_WHEELS, virtual, control(VELOCITY.format("virtual_joint"))))
+    assert len(scene.vehicle["wheel"]) == 2
+    assert [each.signal for each in scene.inputs] == ["axle_torque_Nm[1]", "axle_torque_Nm[2]"]
+    assert any("wheels without mass that are only seen stand for others and are left out: virtual_joint" in each
+               for each in found.remarks)
+    solid = virtual.replace("visual", "collision")
+    with pytest.raises(BadInput, match="wheel virtual_joint has no inertia about its axle; give its link an <inertia>"):
+        imported(tmp_path, robot(TWO_WHEELS, solid), rollers={"": "none"})

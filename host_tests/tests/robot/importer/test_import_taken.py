@@ -3,6 +3,7 @@ their axle. A push reaches what its line says."""
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import pytest
 from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.scene import Scene, read_scene
 from laconic.simulation import simulate
-from made_up_robots import FOUR_WHEELS, MJCF, SDF, THREE_AROUND, TWO_WHEELS, inertial, joint, link, robot, wheel
+from made_up_robots import BOX, FOUR_WHEELS, MJCF, SDF, THREE_AROUND, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 
 def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:
@@ -167,3 +168,53 @@ def test_a_push_that_the_ground_cannot_give_says_what_it_reaches(tmp_path: Path)
     reached = float(re.search(r"for 1 s and reach ([\d.]+) m/s, as wheels slip", words)[1])  # type: ignore[index]
     assert reached < 0.25
     assert end_of_push(scene)[0] == pytest.approx(reached, rel=0.1)
+
+
+SIDE = link("base", inertial(5.0, (0.1, 0.1, 0.08), "0.02 0.01 0.03"), BOX)
+BALL = '<collision><geometry><sphere radius="0.02"/></geometry></collision>'
+BALLS = "".join(link(f"{side}_ball", inertial(0.1, (1e-5,) * 3), BALL)
+                + joint(f"{side}_fix", "fixed", "base", f"{side}_ball", f"0 {y} -0.08")
+                for side, y in (("left", 0.2), ("right", -0.2)))
+
+
+@pytest.mark.parametrize("more", [{}, {"friction_coefficient": 0.8}])
+@pytest.mark.parametrize(("turn", "words"), [(math.pi / 2, "push to the left"), (-math.pi / 2, "push to the left"),
+                                             (math.pi / 6, "push along 30° from ahead")])
+def test_a_robot_that_rolls_across_is_pushed_that_way(tmp_path: Path, turn: float, words: str, more: dict[str, Any]
+                                                      ) -> None:
+    """Its axles lie on a line that is not across."""
+    axle = np.array([-math.sin(turn), math.cos(turn)]) * 0.2
+    text = robot(SIDE, wheel("one", "base", f"{axle[0]} {axle[1]} -0.05", f"0 0 {turn}"),
+                 wheel("two", "base", f"{-axle[0]} {-axle[1]} -0.05", f"0 0 {turn}"), BALLS)
+    found, scene = imported(tmp_path, text, **more)
+    assert any(f"these torques {words} with about 0.3 m/s² for 1 s" in each for each in found.assumptions)
+    off = math.degrees(math.asin(abs(math.sin(turn))))
+    assert has(found, f"let the robot roll straight ahead (the axle of wheel 1 (one) is {off:.3g}° from across); "
+                      f"the inputs {words} instead")
+    ahead, aside, turned = end_of_push(scene)
+    assert (ahead, aside) == pytest.approx((0.3 * math.cos(turn), 0.3 * abs(math.sin(turn))), abs=0.006)
+    assert abs(turned) < 0.01
+
+
+def test_a_robot_that_can_only_turn_is_turned_about_the_point_that_its_line_says(tmp_path: Path) -> None:
+    angle = math.atan2(0.3, 0.5)  # both axles meet 0.5 m to the left of the middle
+    text = robot(SIDE, wheel("front", "base", "0.3 0 -0.05", f"0 0 {angle}"),
+                 wheel("rear", "base", "-0.3 0 -0.05", f"0 0 {-angle}"), BALLS)
+    found, scene = imported(tmp_path, text)
+    assert any("these torques turn the robot about (0, 0.5) m, its fastest wheel with about 0.3 m/s² for 1 s" in each
+               for each in found.assumptions)
+    columns = simulate(scene.with_run(duration_s=1.0)).columns
+    assert columns["yaw_rate_rad_per_s"][-1] == pytest.approx(0.3 / math.hypot(0.3, 0.5), rel=0.02)
+    assert columns["wheel_speed_rad_per_s[1]"][-1] == pytest.approx(0.3 / 0.05, rel=0.02)
+
+
+def test_torques_of_damped_axles_grow_with_the_speed_so_that_the_start_is_no_jolt(tmp_path: Path) -> None:
+    """Steady torques against such damping would lift the wheels at the start and reach the speed at once."""
+    damped = robot(TWO_WHEELS).replace("</joint>", '<dynamics damping="5"/></joint>')
+    found, scene = imported(tmp_path, damped)
+    assert found.text.count('kind = "table"') == 2
+    assert any("these torques push ahead with about 0.3 m/s² for 1 s" in each for each in found.assumptions)
+    columns = simulate(scene).columns
+    speed = columns["velocity_body_m_per_s[1]"]
+    at = [round(time / scene.run.step_s) for time in (0.25, 0.5, 1.0, 1.5)]
+    assert [float(speed[k]) for k in at] == pytest.approx([0.075, 0.15, 0.3, 0.0], abs=0.006)

@@ -116,6 +116,8 @@ def test_rollers_of_the_file_tell_the_kind_and_the_angle(tmp_path: Path) -> None
     assert [each["roller_deg"] for each in vehicle["wheel"]] == pytest.approx([45.0, -45.0, -45.0, 45.0], abs=1e-6)
     assert vehicle["wheel_radius_m"] == pytest.approx(0.05)
     assert vehicle["wheel_inertia_kgm2"] == pytest.approx(7e-4 + 6 * (0.01 * 0.045 ** 2 + 1e-6), rel=1e-6)
+    remarks = import_robot(tmp_path / "robot.urdf", Answers()).remarks
+    assert not any("roller" in each for each in remarks)  # they are parts of wheels, on whatever axle they turn
 
 
 def test_a_mesh_tells_the_radius_of_a_wheel(tmp_path: Path) -> None:
@@ -146,6 +148,15 @@ def test_xacro_with_macros_arguments_and_packages_gives_the_robot_of_the_urdf(tm
     assert found["vehicle"] == expected["vehicle"]
     wide = imported(tmp_path, XACRO, Answers(xacro_arguments={"half": "0.3"}), "robot.urdf.xacro")
     assert [each["y_m"] for each in wide["vehicle"]["wheel"]] == [0.3, -0.3]
+
+
+def test_a_package_may_be_given_relative_to_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "src" / "parts").mkdir(parents=True)
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "src" / "parts" / "wheel.xacro").write_text(MACRO, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    found = imported(tmp_path / "robots", XACRO, Answers(packages={"kit": Path("src/parts")}), "robot.urdf.xacro")
+    assert len(found["vehicle"]["wheel"]) == 2
 
 
 def test_what_is_said_takes_the_place_of_what_is_found(tmp_path: Path) -> None:

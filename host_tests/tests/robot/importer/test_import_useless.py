@@ -97,6 +97,59 @@ def test_an_included_sensor_does_not_stop_a_model_and_is_named(tmp_path: Path) -
     assert "<include> laser is not read; its mass is not counted" in found.remarks
 
 
+NESTED = """<sdf version="1.9"><world name="w"><model name="made_up"><pose>1 2 3 0 0 1</pose>
+<link name="base"><pose>0 0 0.3 0 0 0</pose><inertial><pose>0.02 0.01 0.03 0 0 0</pose><mass>5</mass>
+<inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.08</izz></inertia></inertial>
+<collision name="c"><geometry><box><size>0.4 0.3 0.1</size></box></geometry></collision></link>
+{}</model></world></sdf>"""
+UNIT = """<model name="{0}"><pose relative_to="base">0 {1} -0.05 0 0 0.5</pose>
+<link name="hub"><inertial><mass>0.0001</mass></inertial></link>
+<link name="tyre"><pose>0 0 0 0 0 -0.5</pose><inertial><mass>0.5</mass>
+<inertia><ixx>4e-4</ixx><iyy>7e-4</iyy><izz>4e-4</izz></inertia></inertial>
+<collision name="c"><pose degrees="true">0 0 0 90 0 0</pose>
+<geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry></collision></link>
+<joint name="turn" type="revolute"><parent>hub</parent><child>tyre</child><axis><xyz>0 1 0</xyz></axis></joint>
+<plugin name="drive" filename="libdrive.so"><joint_name>turn</joint_name></plugin></model>
+<joint name="hold_{0}" type="fixed"><parent>base</parent><child>{0}::hub</child></joint>"""
+
+
+def test_a_model_inside_a_model_is_a_part_of_it(tmp_path: Path) -> None:
+    """Each wheel is a model of its own: hub, tyre and the joint between them."""
+    units = UNIT.format("left", "0.2") + UNIT.format("right", "-0.2")
+    found, scene = imported(tmp_path, NESTED.format(units), "robot.sdf")
+    whole = vehicle(tmp_path, SDF, "whole.sdf")
+    assert [each.split(",")[0] for each in found.wheels] == ["wheel 1: left::turn", "wheel 2: right::turn"]
+    assert scene.vehicle["mass_kg"] == pytest.approx(whole["mass_kg"], rel=1e-3)
+    for one, other in zip(scene.vehicle["wheel"], whole["wheel"], strict=True):
+        keys = ("x_m", "y_m", "axle_rad")
+        assert [one[key] for key in keys] == pytest.approx([other[key] for key in keys])
+    assert "driven = false" not in found.text  # the plugin of each unit commands its joint
+    bar = '<link name="bar"><pose>0 0 0.3 0 0 0</pose><inertial><mass>0.001</mass></inertial></link>'
+    deeper = NESTED.format(f'<model name="axle"><pose>0 0 0 0 0 0</pose>{units.replace("base", "bar")}{bar}</model>'
+                           '<joint name="weld" type="fixed"><parent>base</parent><child>axle::bar</child></joint>')
+    found, scene = imported(tmp_path, deeper, "robot.sdf")
+    assert found.wheels[0].startswith("wheel 1: axle::left::turn, fixed, radius 0.05 m at (0, 0.2) m")
+
+
+def test_a_model_of_models_alone_is_the_robot(tmp_path: Path) -> None:
+    body = NESTED.format("").partition("</pose>")[2].rpartition("</model>")[0]
+    units = UNIT.format("left", "0.2") + UNIT.format("right", "-0.2")
+    units = units.replace('relative_to="base', 'relative_to="body::base').replace("<parent>base", "<parent>body::base")
+    text = f'<sdf version="1.9"><model name="cart"><model name="body">{body}</model>{units}</model></sdf>'
+    _, scene = imported(tmp_path, text, "robot.sdf")
+    assert len(scene.vehicle["wheel"]) == 2
+    assert scene.vehicle["wheel"][0]["y_m"] == pytest.approx(0.2)
+
+
+def test_models_inside_models_without_an_end_are_refused(tmp_path: Path) -> None:
+    text = '<model name="m"><link name="l"/>' * 3000 + "</model>" * 3000
+    with pytest.raises(BadInput, match="has models inside models, 21 deep; more than 20 are not read"):
+        imported(tmp_path, f'<sdf version="1.9">{text}</sdf>', "robot.sdf")
+    placed = NESTED.format('<model name="m" placement_frame="l"><link name="l"/></model>')
+    with pytest.raises(BadInput, match="model m has a placement_frame, which is not read; give the pose of its own"):
+        imported(tmp_path, placed, "robot.sdf")
+
+
 def test_joints_that_are_called_as_links_are_read(tmp_path: Path) -> None:
     text = SDF.replace("left_link", "left").replace("right_link", "right").replace(
         '<pose relative_to="left">', '<pose relative_to="base">0 0.2 -0.05 0 0 0</pose><pose>').replace(
@@ -311,3 +364,15 @@ def test_more_wheels_than_the_core_has_room_for_are_refused_at_once(tmp_path: Pa
         imported(tmp_path, robot(body, *(wheel(f"w{k}", "base", f"{0.1 * k} 0.2 -0.05") for k in range(30))))
     with pytest.raises(BadInput, match="100 joints have shapes that reach the ground, more than 64 wheels"):
         imported(tmp_path, robot(body, *(wheel(f"w{k}", "base", f"{0.1 * k} 0.2 -0.05") for k in range(100))))
+
+
+@pytest.mark.parametrize("head", [
+    "<!-- a robot -- with two wheels -->", '<!-- a robot -->\n<?xml version="1.0"?>\n',
+    '\n<?xml version="1.0" encoding="utf-8"?>', '<!-- one -- two\nthree -->\n<?xml version="1.0"?>'])
+def test_what_simulators_read_beyond_xml_is_read(tmp_path: Path, head: str) -> None:
+    """Comments with -- in them, and the first line of XML after comments or blank lines."""
+    assert len(vehicle(tmp_path, head + SDF, "robot.sdf")["wheel"]) == 2
+    assert len(vehicle(tmp_path, head + robot(TWO_WHEELS), "robot.urdf")["wheel"]) == 2
+    broken = head + robot(TWO_WHEELS).replace("</link>", "</lnk>", 1)
+    with pytest.raises(BadInput, match=f"line {1 + head.count(chr(10))}, column .*: the element that is closed is not"):
+        imported(tmp_path, broken)

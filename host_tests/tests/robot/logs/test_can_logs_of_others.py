@@ -95,6 +95,43 @@ def test_each_quantity_may_have_a_channel_of_its_own(tmp_path, capsys):
     assert "POSE (0x202, 11 bits) does not come on the channel 1, but on 4" in refused_log(capsys, log, other)
 
 
+@pytest.mark.parametrize("kind", ["asc", "log", "blf"])
+def test_equal_devices_on_two_buses_are_columns_of_one_quantity(kind, tmp_path, capsys):
+    given, channels = [], []
+    for time, identifier, data in frames():
+        if identifier == WHEELS:  # each drive sends its angle as L, on a bus of its own
+            given += [(time, WHEELS, data[:4] + bytes(4)), (time + 2e-5, WHEELS, data[4:] + bytes(4))]
+            channels += [1, 2]
+        else:
+            given.append((time, identifier, data))
+            channels.append(1)
+    log, _ = several(kind, tmp_path, given, channels)
+    buses = '["can0", "can1"]' if kind == "log" else "[1, 2]"
+    twice = ('"WHEELS.L", "WHEELS.R"', '"WHEELS.L", "WHEELS.L"')
+    both = mapped(tmp_path, change=[twice, ("[wheel_angle]", f"[wheel_angle]\nchannels = {buses}")])
+    assert path_error(capsys, log, both) < SMALL
+    crossed = mapped(tmp_path, change=[twice, ("[wheel_angle]",
+                                               f"[wheel_angle]\nwheels = [2, 1]\nchannels = {buses}")])
+    assert path_error(capsys, log, crossed) > 0.1
+    error = refused_log(capsys, log, mapped(tmp_path, change=[('"WHEELS.L", "WHEELS.R"', '"WHEELS.L", "POSE.X"')]))
+    assert f"equal devices on several need channels = {buses} under their quantity" in error
+
+
+@pytest.mark.parametrize(("columns", "more", "words"), [
+    ('"WHEELS.L", "WHEELS.L"', "",
+     "names 'WHEELS.L' twice; give each column once, or channels = [1, 2] for equal devices on two buses"),
+    ('"WHEELS.L", "WHEELS.L"', "channels = [1, 1]", "names 'WHEELS.L' twice on channel 1; give each column once"),
+    ('"WHEELS.L", "WHEELS.R"', "channels = [1, 2, 3]", "channels: has 3 entries; give 2, one for each column"),
+    ('"WHEELS.L", "WHEELS.R"', 'channels = [1, ""]', "channels: holds ''; give channels as the log writes them"),
+    ('"WHEELS.L", "WHEELS.R"', "channel = 1\nchannels = [1, 1]", "channels: is given besides channel; keep one"),
+    ('"WHEELS.L", "WHEELS.L"', "channels = [1, 7]", "WHEELS (0x101, 11 bits) does not come on the channel 7, but on")])
+def test_channels_that_cannot_be_are_named(columns, more, words, tmp_path, capsys):
+    log = asc(tmp_path / "run.asc", asc_lines(frames()))
+    mapping = mapped(tmp_path, change=[('"WHEELS.L", "WHEELS.R"', columns),
+                                       ("[wheel_angle]", f"[wheel_angle]\n{more}")])
+    assert words in refused_log(capsys, log, mapping)
+
+
 def test_the_same_number_with_29_bits_is_another_message(tmp_path, capsys):
     lines = asc_lines(frames())
     stranger = [f"{line.split()[0]} 1 101x Rx d 8 00 00 00 00 00 00 00 00" for line in lines if " 101 " in line]

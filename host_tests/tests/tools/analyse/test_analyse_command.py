@@ -8,13 +8,14 @@ from matplotlib import image
 
 from laconic.cli import main as cli
 from laconic.scene import read_scene
+from laconic.tools.analyse.analyse import study
 from laconic.tools.analyse.findings import StudyOptions
 from laconic.tools.analyse.from_core import subject_of
 from laconic.tools.analyse.pictures_steady import driven_picture
-from laconic.tools.analyse.study import study
 from scene_text import ideal_scene_names
 
 SCENES = ideal_scene_names()
+QUICK = ("s1", "paper_three_wheel_hopf", "paper_caster", "kuka_youbot", "turtlebot3_burger")
 
 
 def run(capsys, *arguments):
@@ -23,7 +24,8 @@ def run(capsys, *arguments):
     return status, captured.out, captured.err
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.nightly])
+                                   for name in SCENES])
 def test_analyse_answers_for_every_scene_in_under_ten_seconds_of_processor_time(capsys, scene):
     start = time.process_time()
     status, out, _ = run(capsys, "analyse", scene, "--json")

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+import shutil
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import laconic
 from laconic import BadInput, Refused
+from laconic.base.paths import SOURCE_DIR, built
 from laconic.core.binding import load
 
 OMNI = {"mass_kg": 10.0, "yaw_inertia_kgm2": 0.2, "com_x_m": 0.03, "wheel_radius_m": 0.05, "wheel_inertia_kgm2": 0.002,
@@ -307,3 +311,20 @@ def test_what_another_robots_filter_saved_is_refused():
         with pytest.raises(BadInput, match=r"saved: .*is not of this filter"):
             ours.restore(saved)
     assert np.array_equal(ours.state, before)
+
+
+# ---- The page's program in C compiles against the core as it is shipped, and prints what the page says.
+
+PAGE = (SOURCE_DIR / "docs/control.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_the_page_s_program_compiles_and_prints_what_the_page_says(tmp_path: Path) -> None:
+    _, _, rest = PAGE.partition("```c\n")
+    program, _, rest = rest.partition("```\n")
+    shown = rest.partition("```text\n")[2].partition("```")[0]
+    (tmp_path / "program.c").write_text(program, encoding="utf-8")
+    subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", f"-I{SOURCE_DIR / 'core_c/include'}", "program.c",
+                    str(built("core_c/liblaconic.a")), "-o", "program"], cwd=tmp_path, check=True)
+    printed = subprocess.run(["./program"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    assert printed == shown

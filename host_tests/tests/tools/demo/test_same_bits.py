@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import fmpy.fmi1
 import numpy as np
 import pytest
 
-from laconic.base.paths import scene_names
 from laconic.fmu import make_fmu
-from laconic.scene import METHODS, Scene, read_scene
+from laconic.scene import METHODS, Scene, read_scene, rigid_scene_names
 from laconic.tools.demo.fmu_rows import fmu_rows
 from laconic.tools.demo.main_job import LEAST_STEPS, steps_of
 from laconic.tools.demo.node_rows import node_rows
@@ -15,6 +15,11 @@ from laconic.tools.demo.rows import Rows, core_rows, difference, exchanges
 
 # Numbers of steps an exchange that share no factor with the changes of the inputs, nor with each other.
 FMU_EVERY, NODE_EVERY = 3, 7
+
+
+# Of the other scenes `laconic demo` compares every participant, and test_fmu_bits.py the FMUs.
+QUICK = {"s1", "skid_steer", "kuka_youbot", "paper_caster", "robotino_grey", "turtlebot3_burger"}
+SCENES = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.nightly]) for name in rigid_scene_names()]
 
 
 def long_enough(name: str) -> Scene:
@@ -37,7 +42,7 @@ def core_of(scene: Scene, kept: dict[str, Rows]) -> Rows:
     return kept[key]
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("version", [2, 3])
 def test_fmu_gives_the_cores_bits(version, name, tmp_path, expected):
     scene = long_enough(name)
@@ -48,7 +53,7 @@ def test_fmu_gives_the_cores_bits(version, name, tmp_path, expected):
     assert difference(found, core_of(scene, expected), scene.wheel_count) == ""
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", SCENES)
 def test_node_over_can_gives_the_cores_bits(name, expected):
     scene = long_enough(name)
     found = node_rows(scene, scene.steps(), NODE_EVERY)
@@ -115,3 +120,37 @@ def test_exchanges_never_straddle_a_change_of_the_inputs():
     assert max(count for _, count in windows) == 7
     starts = {first for first, _ in windows}
     assert set(inputs.changes) <= starts
+
+
+# ---- An FMU driven by FMPy has its library closed once: closed twice, the loader writes into memory that was
+# freed.
+
+@pytest.fixture
+def closed(monkeypatch) -> list[int]:
+    """The handles of the libraries that FMPy has closed."""
+    handles: list[int] = []
+    monkeypatch.setattr(fmpy.fmi1, "freeLibrary", handles.append)
+    return handles
+
+
+@pytest.fixture(params=[2, 3])
+def fmu(request, tmp_path):
+    return make_fmu(scene(), tmp_path / "scene.fmu", version=request.param)
+
+
+def scene() -> Scene:
+    return read_scene("s1")
+
+
+def test_a_run_closes_the_fmus_library_once(fmu, closed):
+    fmu_rows(scene(), fmu, 3)
+    assert len(closed) == 1
+
+
+def test_a_run_that_fails_closes_the_fmus_library_once(fmu, closed):
+    def interrupt(_: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fmu_rows(scene(), fmu, 3, moved=interrupt)
+    assert len(closed) == 1

@@ -230,8 +230,8 @@ def test_without_gymnasium_one_line_names_the_extra(monkeypatch: pytest.MonkeyPa
 
 def test_the_pages_benchmark_prints_rates(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setattr(race, "stay_on_one_core", lambda: None)
-    page = (ROOT / "docs/learn.md").read_text(encoding="utf-8")
-    words = next(line.split()[1:] for line in page.splitlines() if line.startswith("    laconic benchmark"))
+    page = (ROOT / "docs/batch.md").read_text(encoding="utf-8")
+    words = next(line.split()[1:] for line in page.splitlines() if line.startswith("    laconic benchmark learn"))
     assert run([*words, "--lanes", "4", "--rounds", "1", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert len(rows) == 3 and all(row["thousand_actions_per_s"] > 0 for row in rows)

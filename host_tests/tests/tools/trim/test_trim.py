@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import shutil
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,7 +15,7 @@ import numpy as np
 import pytest
 
 from friction_scenes import skid_steering, slipping
-from laconic.base.paths import build_dir
+from laconic.base.paths import SOURCE_DIR, build_dir, built
 from laconic.cli.main import run
 from laconic.core import load
 from laconic.errors import ResultFails
@@ -100,8 +103,9 @@ def test_a_workshop_may_be_named_by_a_relative_path(tmp_path: Path, monkeypatch:
 
 
 @needs_gcc
-@pytest.mark.parametrize(("name", "real"), [("s1", "double"), ("paper_caster", "double"),
-                                            ("turtlebot3_burger", "single"), ("example_two_wheel_sizes", "double")])
+@pytest.mark.parametrize(("name", "real"), [
+    ("s1", "double"), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("paper_caster", "double"), ("turtlebot3_burger", "single"), ("example_two_wheel_sizes", "double")))])
 def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop, name: str, real: str):
     scene = read_scene(name)
     whole, trim = (workshop.host_program(Variant(scene, real, "-O0", trim)) for trim in (False, True))
@@ -109,7 +113,8 @@ def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop,
 
 
 @needs_gcc
-@pytest.mark.parametrize(("made", "real"), [(skid_steering, "double"), (slipping, "single")],
+@pytest.mark.parametrize(("made", "real"), [
+    pytest.param(skid_steering, "double", marks=pytest.mark.nightly), (slipping, "single")],
                          ids=["skid_steering", "slipping"])
 def test_a_trimmed_core_with_friction_gives_the_same_bits_as_the_whole_one(
         workshop: Workshop, made: Callable[[Path], Scene], real: str, tmp_path: Path):
@@ -119,6 +124,7 @@ def test_a_trimmed_core_with_friction_gives_the_same_bits_as_the_whole_one(
     assert sum(line.startswith("wheel_speed") for line in whole) == scene.wheel_count
 
 
+@pytest.mark.nightly
 @needs_gcc
 def test_a_trimmed_core_with_friction_ends_where_the_plant_does(workshop: Workshop, tmp_path: Path):
     scene = slipping(tmp_path)
@@ -210,6 +216,7 @@ def test_cmake_builds_the_library_for_a_board_with_another_trees_environment(tmp
     assert (tmp_path / "lib" / "liblaconic_scene.a").is_file()
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
 def test_cmake_names_the_remedy_for_a_scene_that_is_not_there(tmp_path: Path):
     import subprocess
@@ -218,3 +225,55 @@ def test_cmake_names_the_remedy_for_a_scene_that_is_not_there(tmp_path: Path):
                           capture_output=True, text=True, check=False)
     assert done.returncode != 0
     assert "no such scene file" in done.stderr
+
+
+# ---- The core as two files and the files of one scene make a program that needs a C compiler and nothing else.
+
+PROGRAM = """\
+#include "laconic_scene_model.h"
+#include <stdio.h>
+
+int main(void) {
+    laconic_state state = laconic_scene_start;
+    laconic_input input = {0};
+    laconic_pose pose;
+    input.voltage_V[0] = 3;
+    for (int i = 0; i < 100; i++)
+        if (laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &input)) return 1;
+    laconic_pose_of(&pose, &laconic_scene_model, &state);
+    printf("%.9g %.9g %.9g\\n", (double)pose.x_m, (double)pose.y_m, (double)pose.heading_rad);
+    return 0;
+}
+"""
+
+
+def test_the_command_writes_the_two_files_into_a_folder_for_programs(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["core"]) == 0
+    assert capsys.readouterr().out == "wrote laconic/laconic.h, laconic/laconic.c\n"
+    for name in ("laconic.h", "laconic.c"):
+        assert (tmp_path / "laconic" / name).read_bytes() == built(f"amalgamation/{name}").read_bytes()
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_the_commands_of_the_page_make_a_program_for_one_scene_with_the_cores_bits(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = (SOURCE_DIR / "docs" / "performance.md").read_text(encoding="utf-8")
+    block = re.search(r"```sh\n(laconic core\n.*?)```", page, re.DOTALL)
+    assert block is not None
+    monkeypatch.chdir(tmp_path)
+    Path("program.c").write_text(PROGRAM, encoding="utf-8")
+    for line in block[1].replace("\\\n", "").splitlines():
+        program, *arguments = shlex.split(line)
+        if program == "laconic":
+            assert run(arguments) == 0
+        else:
+            subprocess.run([program, *arguments], check=True)
+    printed = subprocess.run(["./program"], check=True, capture_output=True, text=True).stdout
+    scene = read_scene("s1").with_run(real="single")
+    plant = scene.plant(scene.core())
+    plant.run({"voltage_V[1]": 3.0}, 100)
+    pose = plant.pose
+    assert [np.float32(each) for each in printed.split()] == [pose.x_m, pose.y_m, pose.heading_rad]

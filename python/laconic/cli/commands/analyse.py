@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 @click.option("--straight", type=(float, float), metavar="NU1 NU2",
               help="Constant voltages for this straight motion, in rad/s, instead of the scene's inputs.")
 @click.option("--start", type=(float, float, float), metavar="NU1 NU2 NU3",
-              help="Where the free motion starts, in rad/s, instead of the scene's start.")
-@click.option("--parameter", metavar="NAME", help="What the bifurcation diagram varies: nu1, nu2, input_scale, or a "
+              help="Start of the free motion in rad/s, instead of the scene's start.")
+@click.option("--parameter", metavar="NAME", help="Parameter of the bifurcation diagram: nu1, nu2, input_scale, or a "
               "number of [vehicle] such as com_y_m.")
-@click.option("--from", "low", type=float, metavar="A", help="Where the bifurcation diagram begins.")
-@click.option("--to", "high", type=float, metavar="B", help="Where it ends.")
+@click.option("--from", "low", type=float, metavar="A", help="Beginning of the bifurcation diagram.")
+@click.option("--to", "high", type=float, metavar="B", help="End of the diagram.")
 @json_flag("Machine-readable result on stdout.")
 def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, straight: tuple[float, float] | None,
             start: tuple[float, float, float] | None, parameter: str | None, low: float | None,
@@ -43,11 +43,9 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     """
     from laconic.base.progress import progress_bar
     from laconic.scene import read_scene
-    from laconic.tools.analyse.analyse import chosen_subject
+    from laconic.tools.analyse.analyse import chosen_subject, study
     from laconic.tools.analyse.findings import StudyOptions
-    from laconic.tools.analyse.older_page import pictures_of_older_page
-    from laconic.tools.analyse.report import as_numbers, as_text
-    from laconic.tools.analyse.study import study
+    from laconic.tools.analyse.report import as_numbers, as_text, pictures_of_older_page
 
     _check(low, high, straight, start)
     options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)

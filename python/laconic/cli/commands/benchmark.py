@@ -37,12 +37,12 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     """Times vehicles that step side by side, or counts instructions: WHAT is step, batch, learn, filter, soft-double
     or codes.
 
-    step: scene s1 in explicit steps of fourth order, with the whole core, with the core trimmed to the scene, and by a
-    kernel written by hand for this one vehicle, with the core's refusals and without any; all have the same bits.
+    step: scene s1 in explicit steps of fourth order, by the full build, by the core trimmed to the scene, and by a
+    kernel written by hand for this one vehicle. The kernel has the core's refusals or none. All have the same bits.
 
-    batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core: the core's
-    batch, the core one vehicle after the other, and the same step in numba and JAX, and MuJoCo, where they are
-    installed. All that compute the same are compared with the core before they are timed.
+    batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core. It compares the
+    core's batch, the core one vehicle after the other, the same step in numba and JAX, and MuJoCo, if installed. All
+    that compute the same are compared with the core before they are timed.
 
     learn: the environment laconic/DriveToPose-v0 under random actions, in one batch, with vehicles that differ, and as
     Gymnasium's vector of single ones.
@@ -53,8 +53,7 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     soft-double: additions in double precision by soft_double.c and by libgcc on an emulated Cortex-M4F, and a step of
     scene s1 with either.
 
-    codes: what docs/secure.md costs, a key and the code of a frame (AES-128 CMAC), on an emulated Cortex-M4F, with two
-    keys.
+    codes: a key and the code of a frame (AES-128 CMAC, docs/rig-ports.md) on an emulated Cortex-M4F, with two keys.
     """
     from laconic.tools.report.many.race import stay_on_one_core
 

@@ -19,7 +19,7 @@ SOFT_DOUBLE = ("soft_double.h", "soft_double.c", "check_double.c")
               help="Folder for the two files.")
 @click.option("--soft-double", is_flag=True,
               help="Also the addition in double for Arm processors without it, such as Cortex-M3 and M4, and a program "
-                   "that tells whether it is needed.")
+                   "that checks whether it is needed.")
 def command(out: Path, soft_double: bool) -> None:
     """Writes the C core as laconic.h and laconic.c.
 

@@ -21,14 +21,14 @@ SCENES = ("turtlebot3_burger", "robotino2", "kuka_youbot", "paper_caster", "pape
 @click.command("demo")
 @click.argument("scenes", type=SceneName(), nargs=-1, metavar="[SCENE]...")
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
-              help="Where pictures and figures go; demo/ of the build tree if not given.")
+              help="Folder for pictures and figures; demo/ of the build tree if not given.")
 @json_flag()
 def command(scenes: tuple[str, ...], out: Path | None, json_wanted: bool) -> int:
-    """Runs each SCENE (by default three real robots and the paper's examples) through the core, its FMU (FMI 2 and
-    FMI 3, by FMPy) and the firmware node over CAN in lockstep, and compares all of them bit for bit.
+    """Runs each SCENE (by default three real robots and the paper's examples) through the core, its FMU (FMI 2 and FMI
+    3, by FMPy) and the firmware node over CAN in lockstep. Compares all of them bit for bit.
 
-    The core is compared with an independent reference (SciPy, tight tolerance) for every method and several steps:
-    error against run time, as a table, a CSV file and one picture a scene. Exit status 1 when any bit differs.
+    The core is compared with an independent reference (SciPy, tight tolerance) for every method and several steps. The
+    error against run time is a table, a CSV file and one picture a scene. Exit status 1 when any bit differs.
     """
     from laconic.tools.demo.main_job import STAGES, run_scene
     from laconic.tools.demo.showing import show, write_figures

@@ -21,12 +21,12 @@ LEFT_OUT = ("session", "run")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
               help="Write the scene with the values found; - for stdout.")
 @click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
-              help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place "
-              "and heading (of the whole robot against the true pose), axle, roller (angles of each wheel), "
-              "common-radius (one of all wheels); on ground with friction drag (of rollers), friction, axle-friction, "
-              "wheel-friction (of each, as a share), viscous (of motors); controller (of the wheels' speeds); from "
-              "voltages or currents mass, yaw-inertia, wheel-inertia, motor-gain, motor-damping, resistance, "
-              "torque-constant.")
+              help="Parameters that may change. Geometry: radius (of each wheel), distance (of all wheels, one "
+              "factor), centre-of-mass, place and heading (of the robot against the recorded pose), axle, roller "
+              "(angles of each wheel), common-radius (one of all wheels). On ground with friction: drag (of rollers), "
+              "friction, axle-friction, wheel-friction (of each, as a share), viscous (of motors), controller (of the "
+              "wheels' speeds). From voltages or currents: mass, yaw-inertia, wheel-inertia, motor-gain, "
+              "motor-damping, resistance, torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
@@ -42,12 +42,13 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
             json_wanted: bool) -> None:
     """Finds parameters of a scene from LOG..., recorded runs or folders of them.
 
-    Robust nonlinear least squares on the distance between the rolled and the true path, without a true pose on the
-    turn that a gyro felt; on ground with friction the core moves, its wheels held at the recorded speeds, and steady
-    currents count as well. Masses and motors are found from the wheel speeds that recorded voltages or currents give.
-    Each value comes with a 95 % interval; what the runs do not tell stays nominal, and it is stated which run would.
-    FITTED.toml is a complete scene, with sources and intervals in comments. Exit status 1 where the values found are
-    worse than the nominal ones on runs to judge or left out; with -o - the report goes to stderr.
+    Robust nonlinear least squares on the distance between the rolled and the recorded path, or on the turn of a gyro
+    without a recorded pose. On ground with friction the core moves, its wheels held at the recorded speeds, and steady
+    currents also count. Masses and motors are found from the wheel speeds that recorded voltages or currents give. Each
+    value has a 95 % interval. Parameters that the runs do not determine stay nominal, and the report states which run
+    would determine them. FITTED.toml is a complete scene, with sources and intervals in comments. The exit status is 1
+    if the fitted values are worse than the nominal ones on runs to judge or left out. With -o - the report is on
+    stderr.
     """
     from laconic.base.progress import progress_bar
     from laconic.robot.identify import report

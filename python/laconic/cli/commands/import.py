@@ -26,20 +26,19 @@ from laconic.errors import BadInput
 @click.option("--wheel-inertia", "inertias", multiple=True, metavar="[JOINT=]KGM2",
               help="Moment of inertia about the axle, of all wheels or of one.")
 @click.option("--friction", type=float, metavar="MU", help="Ground with this friction coefficient: wheels may slip.")
-@click.option("--model", metavar="NAME", help="Of several models in the file, this one (SDF, MJCF).")
+@click.option("--model", metavar="NAME", help="Name of one of several models in the file (SDF, MJCF).")
 @click.option("--set", "arguments", multiple=True, metavar="NAME:=VALUE", help="An argument of the xacro file.")
 @click.option("--package", "packages", multiple=True, metavar="NAME=FOLDER",
-              help="Where a ROS package or Gazebo model is that is not beside or above the file.")
-@json_flag("What was found, assumed and left out, as JSON on stdout.")
+              help="Folder of a ROS package or Gazebo model that is not next to or above the file.")
+@json_flag("Parts, assumptions and omissions as JSON on stdout.")
 def command(robot: Path, out: Path, wheels: tuple[str, ...], rollers: tuple[str, ...], radius: tuple[str, ...],
             inertias: tuple[str, ...], friction: float | None, model: str | None, arguments: tuple[str, ...],
             packages: tuple[str, ...], json_wanted: bool) -> None:
     """Makes a scene of ROBOT: masses, inertias, centre of mass, and places, axles, radii and rollers of the wheels.
 
-    Wheels are the joints that turn round on a level axle and whose shapes reach the ground, whatever link they hang
-    on; casters and other shapes on the ground become supports. What the file cannot tell (rollers that it does not
-    draw, the radius of a wheel without shape, motors) is asked for, or is marked as an assumption in a comment of
-    ROBOT.toml.
+    Wheels are the joints that turn round on a level axle and whose shapes reach the ground, on any link. Casters and
+    other shapes on the ground become supports. Information that is not in the file (rollers that it does not draw, the
+    radius of a wheel without shape, motors) is requested, or marked as an assumption in a comment of ROBOT.toml.
     """
     from laconic.robot.importer import Answers, import_robot
     from laconic.robot.importer.answers import by_joint, positive

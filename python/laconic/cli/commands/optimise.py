@@ -37,7 +37,8 @@ def _list_goals(context: click.Context, _: click.Parameter, is_on: bool) -> None
 @click.option("--free", multiple=True, metavar="KEY=a:b", help="A number of the scene and the range it may have, in "
               "the unit of its name: vehicle.wheel[3].distance_m=0.05:0.2; keys with commas between them have one "
               "value. May be given several times.")
-@click.option("--goal", "goals", multiple=True, metavar="min:MEASURE|max:MEASURE", help="What is to be small or large. "
+@click.option("--goal", "goals", multiple=True, metavar="min:MEASURE|max:MEASURE",
+              help="The measure to make small or large. "
               "With several goals the choices are found of which none is better in all of them.")
 @click.option("--subject-to", "constraints", multiple=True, metavar="'MEASURE<=v'",
               help="A bound to keep, <= or >=. May be given several times.")
@@ -56,7 +57,7 @@ def _list_goals(context: click.Context, _: click.Parameter, is_on: bool) -> None
 @click.option("--generations", type=click.IntRange(1, MOST_GENERATIONS), default=300, show_default=True,
               help="Generations of the search at most.")
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True,
-              help="Of the search: the same one gives the same result.")
+              help="Seed of the search: the same one gives the same result.")
 @json_flag("Machine-readable result on stdout.")
 def command(scene: str, free: tuple[str, ...], goals: tuple[str, ...], constraints: tuple[str, ...], out: Path | None,
             plot: Path | None, front_path: Path | None, points: int, pick: int | None, generations: int, seed: int,

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
               help=f"A drive that fails: {', '.join(FAULTS)}; or random, by --seed.")
 @click.option("--bus-fault", "bus_faults", multiple=True, metavar="NAME=VALUE",
               help="A fault of the controller's bus, such as loss=0.01: those of the interface faulty.")
-@click.option("--seed", type=int, help="Of random faults.  [default: 1]")
+@click.option("--seed", type=int, help="Seed of random faults.  [default: 1]")
 @click.option("--stop-within", "stop_within_s", type=float, metavar="SECONDS",
               help="The vehicle must stand so soon after the first fault, or else the controller's last frame.")
 @click.option("--stop-distance", "stop_distance_m", type=float, metavar="METRES", help="... and so near.")
@@ -61,8 +61,8 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
 
     --drives speaks the protocol of its motor drives, or --dbc and --map say what its frames mean. Without an interface
     of your own, --listen 0 prints a port at which python-can's slcan connects. Lateness is printed at the end. Exit
-    status 0 when the user or --duration has ended it, 1 when the bus died, a step was refused or a watchdog fired, 2
-    for bad input.
+    status: 0 if the user or --duration ended it; 1 if the bus died, a step was refused or a watchdog fired; 2 for bad
+    input.
     """
     from laconic.can.play.canopen_eds import eds_of_scene
     from laconic.can.play.options import PlayOptions

@@ -23,10 +23,10 @@ OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.argument("scene", type=SceneName())
 @click.option("--inputs", type=click.Choice(INPUTS),
-              help="What of the log drives the model. By default voltages where its columns are signals, in one file "
-              "or many; currents where the log has them and the ground no friction; else the wheels' speeds.")
+              help="The columns of the log that drive the model. Default: voltages if its columns are signals, in one "
+              "file or many; currents if the log has them and the ground no friction; else the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
-              help="Fit friction on this run; may be given several times. By default every other run of a folder.")
+              help="Fit friction on this run; may be given several times. Default: every other run of a folder.")
 @map_option
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")

@@ -10,10 +10,10 @@ import click
 from rich.console import Console
 
 from laconic.base.outputs import make_folder
-from laconic.base.paths import results_dir, scene_names
+from laconic.base.paths import results_dir
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, reason_of
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 
 
 @click.command("report")
@@ -26,9 +26,9 @@ from laconic.scene import read_scene
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
     """Measures what accuracy costs: error against run time, stability, sizes; of robots, or of the project itself.
 
-    With --scene the page is about that robot. Without, it is about the project, and measures drift, extremes and other
-    integrators besides; the project's goals are a page of their own, goals.html. Writes index.html (one file, opens
-    offline), report.json and a CSV for each table; the folder work beside them keeps the programs that were measured.
+    With --scene the page is about that robot. Without, it is about the project, and also measures drift, extremes and
+    other integrators. The project's goals are on their own page, goals.html. Writes index.html (one file, opens
+    offline), report.json and a CSV for each table; the folder work next to them keeps the programs that were measured.
     A measurement whose tools are not installed is left out and named.
     """
     from laconic.tools.report.collect import collect
@@ -37,7 +37,7 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     from laconic.tools.report.writing import write
 
     folder = out or results_dir("report")
-    read = [read_scene(name) for name in scenes or scene_names()]
+    read = [read_scene(name) for name in scenes or rigid_scene_names()]
     try:
         make_folder(folder)
         report = (collect_robots if scenes else collect)(read, folder / "work", quick)

@@ -53,11 +53,11 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @json_flag()
 def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: bool, stop: bool, reset: bool,
             **given: Any) -> int:
-    """Drives a node over CAN with the inputs of SCENE, runs the core beside it as twin, and judges every signal.
+    """Drives a node over CAN with the inputs of SCENE, runs the core as a reference, and judges every signal.
 
     Without --interface and --board a node in this process answers on python-can's virtual bus, in virtual time. The
-    node is at rest when the command ends, also when it is interrupted. Exit status 1 when a verdict fails or the bus or
-    node dies in the run, 2 when no node can be reached, 130 or 143 when SIGINT (Ctrl-C) or SIGTERM has ended the run.
+    node is at rest when the command ends, also when it is interrupted. Exit status: 1 if a verdict fails or the bus or
+    node dies in the run; 2 if no node can be reached; 130 or 143 if SIGINT (Ctrl-C) or SIGTERM ended the run.
     """
     from laconic.can.rig.options import Options
 

@@ -15,8 +15,9 @@ from laconic.base.outputs import is_stdout, opened
 from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
 from laconic.cli.streams import warn
 from laconic.core import REALS
+from laconic.core.articulated import method_names
 from laconic.core.estimate import Errors, ErrorSizes
-from laconic.errors import Refused, ResultFails
+from laconic.errors import BadInput, Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
 from laconic.scene import METHODS, Scene, read_scene
 from laconic.scene.axle_lines import nearly_one_line
@@ -30,8 +31,9 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 
 
 @click.command("simulate")
-@click.argument("scene", type=SceneName())
-@one_of("--method", METHODS, "Method instead of the scene's")
+@click.argument("scene", type=SceneName(hinges=True))
+@one_of("--method", tuple(dict.fromkeys((*METHODS, *method_names()))),
+        "Method instead of the scene's; circle and moebius-4 are for vehicles with hinges")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("-o", "--out", type=OutputFile(".csv", stdout=True), metavar="F.csv",
@@ -45,25 +47,27 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 @click.option("--errors", "errors_wanted", is_flag=True,
               help="Write the estimated error of each row as further columns of --out.")
 @click.option("--enclose", "enclose_wanted", is_flag=True,
-              help="Enclose the true motion and prove how far the core is from it; --out gets columns of both.")
+              help="Enclose the exact solution and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
             plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool, enclose_wanted: bool,
             json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
-    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
-    gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
-    would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
-    the exit status is 1. The estimated error of the steps and of rounding is told at the end: see
-    docs/error-estimate.md. --enclose proves what the true motion of the file's numbers is, as intervals: see
-    docs/enclosures.md.
+    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
+    coefficient or the height of the centre of mass in the scene, the ground is watched. The first wheel that would slip
+    or lift is named on stderr. If a step is refused, everything before it is written, and the exit status is 1. The
+    estimated error of the steps and of rounding is printed at the end. --enclose proves intervals that contain the
+    exact motion of the file's numbers. See docs/accuracy.md.
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
+    if given.has_hinges:
+        not_with_hinges(given, errors_wanted, enclose_wanted)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
+                             *(drawn_with_hinges(given) if plot or film else ()),
                              *(signals_to_enclose(given) if enclose_wanted else ())))
     run = as_far_as_it_goes(given, tuple(signals))
     enclosure = enclosed(run) if enclose_wanted else None
@@ -79,7 +83,12 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         click.echo(json.dumps(summary(run, out, plot, film) | (enclosure.json if enclosure else {}), indent=1))
     elif not (out and is_stdout(out)):
         print_summary(run, out, plot, film, lines=enclosure.lines if enclosure else ())
-    for line in nearly_one_line(given):
+    for each in run.limited:
+        warn(f"{given.path}: {each.in_words(given.run.step_s)}")
+    if run.least_margin and run.least_margin[0] < 0.0:
+        warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
+             f"slip, by {-run.least_margin[0]:.3g} N")
+    for line in () if given.has_hinges else nearly_one_line(given):
         warn(f"{given.path}: {line}")
     if (standing := resting(run)) and standing.tips:
         warn(f"{given.path}: the robot: {standing.tips}")
@@ -89,10 +98,28 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         raise ResultFails(f"{run.refused}{kept_in(out, plot, film)}")
 
 
+def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool) -> None:
+    """BadInput for what a run of a vehicle with hinges does not have yet."""
+    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted)):
+        if is_wanted:
+            raise BadInput(f"{scene.path}: {option} does not take vehicles with hinges yet; leave it out")
+
+
+def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
+    """What a picture of bodies on hinges needs besides the usual signals."""
+    if not scene.has_hinges:
+        return ()
+    from laconic.pictures.outlines import DRAWN
+    from laconic.scene.hinge_signals import output_signals_of
+
+    known = output_signals_of(scene.vehicle, scene.hinges)
+    return tuple(signal for name in DRAWN for signal in known[name])
+
+
 def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
     """The run, to its end or to the step that is refused."""
     try:
-        return simulate(scene, signals, progress=True, estimated=True)
+        return simulate(scene, signals, progress=True, estimated=not scene.has_hinges)
     except RunRefused as cut_short:
         return cut_short.run
 
@@ -117,8 +144,7 @@ def signals_to_enclose(scene: Scene) -> tuple[str, ...]:
 
 def enclosed(run: Trajectory) -> Enclosure:
     """Encloses the motion of a run, and gives the run its columns."""
-    from laconic.tools.enclosure.study import study_of
-    from laconic.tools.enclosure.tables import as_json, columns_of, lines_of
+    from laconic.tools.enclosure.study import as_json, columns_of, lines_of, study_of
 
     study = study_of(run)
     columns = columns_of(study)
@@ -164,10 +190,19 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "steps": run.steps, "seconds": run.seconds,
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "estimated_error": asdict(run.errors) if run.errors else None,
-        "no_slip": run.grip.as_json() if run.grip else None,
+        "no_slip": run.grip.as_json() if run.grip else margin_json(run),
+        "limited": [asdict(each) for each in run.limited],
         "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}
+
+
+def margin_json(run: Trajectory) -> dict[str, Any] | None:
+    """The least distance from slip of a run with hinges, judged by loads at rest; None where no friction is known."""
+    if run.least_margin is None:
+        return None
+    margin, time_s = run.least_margin
+    return {"holds": margin >= 0.0, "least_margin_N": margin, "time_s": time_s}
 
 
 def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:

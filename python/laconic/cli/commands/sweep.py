@@ -26,30 +26,30 @@ SAMPLINGS = ("sobol", "latin", "random")
               help="A key by its path, such as vehicle.wheel[2].x_m, and its values: n from a to b, a list, or a "
                    "distribution (normal, uniform, lognormal, triangular). Repeatable: grids make a product.")
 @click.option("--samples", type=click.IntRange(1), metavar="N", help="Samples of the distributions.")
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Of the samples.")
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Seed of the samples.")
 @click.option("--sampling", type=click.Choice(SAMPLINGS), default="sobol", show_default=True,
               help="Quasi-random, Latin hypercube, or pseudo-random.")
 @click.option("--sensitivity", is_flag=True,
               help="Sample for Sobol' indices: N times (number of keys + 2) runs; N best a power of 2.")
 @click.option("--measure", "measures", multiple=True, metavar="NAME",
-              help="What is written of each run, by name; the end of the run without it. Repeatable.")
+              help="A measure of each run, by name; the end of the run without it. Repeatable.")
 @click.option("--measures", "list_wanted", is_flag=True, help="List the measures, and nothing else.")
 @click.option("--workers", type=click.IntRange(0, 4096), metavar="N",
               help="Processes on this machine, one for each core without it; 0: this process alone.")
 @click.option("--scheduler", metavar="ADDRESS", help="A Dask scheduler, such as tcp://127.0.0.1:8786, for its workers.")
 @click.option("-o", "--out", "--output", "folder", type=OutputFolder(), metavar="DIR",
-              help="Folder for the results; one that has begun goes on.")
+              help="Folder for the results; a sweep that has begun there continues.")
 @click.option("--repeat", "index", type=click.IntRange(0), metavar="INDEX",
               help="Write the scene of one run of the results in -o, for laconic simulate.")
 @click.option("--scene-out", type=OutputFile(".toml", stdout=True), default=None, metavar="F.toml",
-              help="Where --repeat writes it; stdout without it.")
+              help="File for the scene of --repeat; stdout without it.")
 def command(scene: str | None, vary: tuple[str, ...], samples: int | None, seed: int, sampling: str, sensitivity: bool,
             measures: tuple[str, ...], list_wanted: bool, workers: int | None, scheduler: str | None,
             folder: Path | None, index: int | None, scene_out: Path | None) -> None:
     """Runs SCENE once for each point of a grid, or for samples of distributions, and writes measures of each run.
 
     DIR gets results.parquet, one row for each run, sweep.json with all that is needed to repeat them, and a page with
-    pictures, summary.html. Whatever ends the command keeps the runs that are done: the same command goes on.
+    pictures, summary.html. If the command is interrupted, completed runs are kept, and the same command continues.
     """
     if scene and (list_wanted or index is not None):
         flag = "--measures" if list_wanted else "--repeat"

@@ -30,8 +30,9 @@ def dropped_of(ground: Ground, answers: Answers) -> list[str]:
     if answers.friction_coefficient is None:
         told += _surfaces(wheels)
     if (idle := idle_of(ground)) and (drives := drives_elsewhere(ground)):
-        told.append(f"{' and '.join(drives)} drives the robot, and {listed([each.name for each in idle])} "
-                    "only roll; that drive is left out")
+        told.append(f"{' and '.join(drives)} drives the robot and is not modelled as a wheel, as it is steered or "
+                    "slides: a support carries its load, its steering is held straight, and a force on the body takes "
+                    f"the place of its drive; {listed([each.name for each in idle])} only roll")
     return told
 
 

@@ -25,9 +25,8 @@ from laconic.robot.importer.push import (
     REACHES,
     Axles,
     Push,
-    listed_steps,
-    push_ahead,
-    smallest,
+    push,
+    tables_of,
 )
 from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import Robot
@@ -312,8 +311,8 @@ class _Writer:
         return found
 
     def push(self, scene: Scene) -> list[dict[str, Any]]:
-        """Torques that push the robot ahead, so that the scene shows a motion; none where it cannot roll ahead. Where a
-        wheel drives it that is not modelled, a force takes its place."""
+        """Torques that push the robot ahead, or else as its wheels let it move, so that the scene shows a motion. Where
+        a wheel drives it that is not modelled, a force takes its place."""
         slips = "ground" in scene.vehicle  # only there have the axles their friction
         wheels = self.ground.wheels
         axles = Axles(np.array([wheel.joint.damping_Nms for wheel in wheels]),
@@ -321,16 +320,18 @@ class _Writer:
                       np.array([wheel.joint not in self.idle for wheel in wheels]))
         elsewhere = drives_elsewhere(self.ground)
         by_force = not axles.are_driven.any()
-        found = push_ahead(scene, axles, by_force)
+        found = push(scene, axles, by_force)
         if found.why_not:
             self.remarks.append(self.named(found.why_not))
             return []
-        what = "these torques push"
+        what = f"these torques {found.way}"
         if by_force:
-            what = f"this force takes the place of {' and '.join(elsewhere)} and pushes"
-        self.comments["input", "0", "signal"] = f"assumption: {what} ahead {self.reached(found)}"
-        least = smallest([*found.values.values()])
-        return listed_steps({signal: value for signal, value in found.values.items() if abs(value) > least}, _rounded)
+            what = (f"this force takes the place of {' and '.join(elsewhere)} and "
+                    + found.way.replace("push", "pushes").replace("turn", "turns"))
+        self.comments["input", "0", "signal"] = f"assumption: {what}{found.measured} {self.reached(found)}"
+        if found.instead:
+            self.remarks.append(self.named(f"{found.instead}; the inputs {found.way} instead"))
+        return tables_of(found.values, scene.run.step_s, _rounded)
 
     def named(self, text: str) -> str:
         """With the joint's name behind the number of a wheel."""

@@ -119,7 +119,7 @@ class MeshFiles:
         if folder is None:
             self.asked_for = name
             raise BadInput(f"package {name}")  # xacro wraps it
-        return str(folder)
+        return str(folder.absolute())  # xacro takes a relative one as beside the file that includes
 
 
 def own_folders(robot: Path) -> list[Path]:

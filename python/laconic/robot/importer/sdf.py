@@ -50,6 +50,7 @@ from laconic.robot.importer.robot_tree import (
     check_count,
     mimics,
 )
+from laconic.robot.importer.sdf_nested import flatten
 from laconic.robot.importer.sdf_tree import tree_of
 from laconic.robot.importer.surfaces import surface_of
 from laconic.robot.importer.xml_file import Element, bytes_of, root_of
@@ -107,11 +108,12 @@ def _model(path: Path, root: Element, name: str | None) -> tuple[Element, list[s
 
 
 def _outer_models(root: Element) -> list[Element]:
-    """Those with links that are part of no other such model."""
+    """Those with links, or with joints between models inside, that are part of no other such model."""
     found, waiting = [], [root]
     while waiting:
         for child in waiting.pop():
-            if child.tag == "model" and child.find("link") is not None:
+            joins = child.find("joint") is not None and child.find("model") is not None
+            if child.tag == "model" and (joins or child.find("link") is not None):
                 found.append(child)
             else:
                 waiting.append(child)
@@ -121,11 +123,6 @@ def _outer_models(root: Element) -> list[Element]:
 def _robots(models: Sequence[Element]) -> list[Element]:
     """Those that are not static, as a ground plane is."""
     return [each for each in models if (_text(each, "static") or "") not in ("1", "true")]
-
-
-def _moves(model: Element) -> bool:
-    """Whether it has a joint that is not fixed."""
-    return any(KINDS.get(joint.get("type", "")) != FIXED for joint in model.iter("joint"))
 
 
 def gravity_of(path: Path, root: Element, model: Element) -> list[float]:
@@ -142,12 +139,13 @@ class _Model:
 
     def __init__(self, path: Path, model: Element, files: MeshFiles, gravity_m_per_s2: list[float],
                  remarks: list[str]):
+        flatten(path, model)
         self.path, self.model, self.files, self.gravity_m_per_s2 = path, model, files, gravity_m_per_s2
         self.remarks = [*remarks, *self._nested(), *self._gearboxes()]
         for part in (*model.findall("link"), *model.findall("joint")):
             refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}
-        self.joints = {self._name(each): each for each in model.findall("joint") if not self._is_of_nested(each)}
+        self.joints = {self._name(each): each for each in model.findall("joint") if not self._is_of_include(each)}
         frames = {self._name(each): each for each in model.findall("frame")}
         self._check_names(frames)
         self.taken = {*self.links, *frames}
@@ -159,7 +157,7 @@ class _Model:
     def _check_names(self, frames: Mapping[str, Element]) -> None:
         """BadInput for two of one kind that have one name. Older files have joints that are called as links."""
         for tag, named in (("link", self.links), ("joint", self.joints), ("frame", frames)):
-            every = [each for each in self.model.findall(tag) if tag != "joint" or not self._is_of_nested(each)]
+            every = [each for each in self.model.findall(tag) if tag != "joint" or not self._is_of_include(each)]
             if len(named) < len(every):
                 raise BadInput(f"{self.path}: two {tag}s have one name; give each its own")
         if set(frames) & set(self.links):
@@ -170,15 +168,9 @@ class _Model:
         return f"{joint} (joint)" if joint in self.taken else joint
 
     def _nested(self) -> list[str]:
-        """A remark on models inside; BadInput for one with joints that move, whose wheels would be missed."""
-        remarks = []
-        for each in (*self.model.findall("include"), *self.model.findall("model")):
-            name = each.get("name") or _text(each, "name") or _text(each, "uri") or f"<{each.tag}>"
-            if _moves(each):
-                raise BadInput(f"{self.path}: model {self.model.get('name')} has a <{each.tag}> {name} with joints "
-                               "that move, which is not read; put its links into it")
-            remarks.append(f"<{each.tag}> {name} is not read; its mass is not counted")
-        return remarks
+        """A remark on each file that the model includes."""
+        names = [_text(each, "name") or _text(each, "uri") or "<include>" for each in self.model.findall("include")]
+        return [f"<include> {name} is not read; its mass is not counted" for name in names]
 
     def _gearboxes(self) -> list[str]:
         """A remark on each joint that couples two others."""
@@ -186,9 +178,12 @@ class _Model:
                 "out: each wheel turns on its own" for each in self.model.findall("joint")
                 if each.get("type") == GEARBOX]
 
-    def _is_of_nested(self, joint: Element) -> bool:
-        """Whether it holds a link of a model inside, which is left out."""
-        return any("::" in (_text(joint, end) or "") for end in ("parent", "child"))
+    def _is_of_include(self, joint: Element) -> bool:
+        """Whether it holds a link of a file that the model includes, which is left out."""
+        if self.model.find("include") is None:
+            return False
+        links = {each.get("name") for each in self.model.findall("link")}
+        return any("::" in (end := _text(joint, tag) or "") and end not in links for tag in ("parent", "child"))
 
     def _name(self, element: Element) -> str:
         name = element.get("name")

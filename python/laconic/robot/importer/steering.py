@@ -11,7 +11,7 @@ from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import HINGE, Joint, Robot
 
 UPRIGHT = np.cos(np.radians(20.0))  # of a swivel's axis: kingpins of cars are inclined by up to 15°
-NARROW_RAD = np.pi  # a caster turns farther than this
+FULL_RAD = np.radians(359.0)  # what turns less is said to have limits
 NO_TRAIL, NO_TRAIL_M = 0.05, 1e-3  # of the wheel's radius, and at least
 NEAR = 2.0  # times its radius: a wheel that trails farther is carried by a body, not by a fork
 
@@ -71,6 +71,5 @@ def _kind(joint: Joint, trail_m: float, radius_m: float) -> tuple[bool, str]:
         return True, f"{trail}, commanded by {joint.commands[0].what}"
     if has_none:
         return True, trail
-    if joint.is_limited and joint.range_rad < NARROW_RAD:
-        return True, f"{trail}, turns within limits of {np.degrees(joint.range_rad):.0f}°"
-    return False, f"{trail}, no command"
+    limits = f", turns within limits of {np.degrees(joint.range_rad):.0f}°" if joint.range_rad < FULL_RAD else ""
+    return False, f"{trail}, no command{limits}"

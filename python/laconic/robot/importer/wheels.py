@@ -9,9 +9,10 @@ import numpy as np
 
 from laconic.errors import BadInput, nearest_of
 from laconic.robot.importer.answers import Answers, answer
+from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.rigid_body import inertia_about_axis
-from laconic.robot.importer.robot_tree import HINGE, SLIDE, Joint, Link, Robot, Shape, Surface
+from laconic.robot.importer.robot_tree import FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape, Surface
 from laconic.robot.importer.steering import Swivel, is_upright, swivel_of, turntables
 from laconic.robot.importer.surfaces import is_frictionless
 from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
@@ -93,20 +94,23 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     height = min(float(joint.point_m[2]) - reach.radius_m for joint, reach in known)
     remarks += [f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
                 f"--radius {joint.name}=METRES would say otherwise" for joint, reach in measured if reach is None]
-    reaching = []
+    reaching, aloft = [], []
     for joint, reach in known:
         above = float(joint.point_m[2]) - reach.radius_m - height
         if above <= REACHES * reach.radius_m or named:
             reaching.append((joint, reach))
         else:
-            remarks.append(f"joint {joint.name} turns on a level axle, {1e3 * above:.0f} mm above the ground, and is "
-                           "no wheel; "
-                           f"--wheel JOINT for each wheel would say otherwise")
+            aloft.append((joint.name, f"{1e3 * above:.0f} mm"))
+    remarks += _of_each(aloft, "joint {} turns on a level axle, {} above the ground, and is no wheel",
+                        "joints turn on level axles above the ground, and are no wheels",
+                        "--wheel JOINT for each wheel would say otherwise")
     if len(reaching) > MOST_WHEELS:
         raise BadInput(f"{robot.path}: {len(reaching)} joints have shapes that reach the ground, more than "
                        f"{MOST_WHEELS} wheels; give --wheel JOINT for each wheel")
     tables = turntables(robot, [(joint, reach.radius_m) for joint, reach in reaching])
     found = [_wheel(robot, joint, reach, answers, named, tables) for joint, reach in reaching]
+    found, stands_for = _without_virtual(robot, found, answers, bool(named))
+    remarks += stands_for
     wheels, casters = _apart(found, answers, bool(named))
     if not wheels:
         _check_known(robot, measured, are_all=True)
@@ -114,10 +118,21 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     _check_places(robot, wheels)
     remarks += [f"joint {table.name} carries all wheels; it is held in its zero position" for table in tables]
     remarks += [remark for wheel in wheels for remark in wheel.remarks]
-    remarks += [f"joint {joint.name} turns round on an axle {_degrees(np.arcsin(min(abs(joint.axis[2]), 1.0)))} from "
-                "level, and is no wheel; a wheel's axle is level" for joint in robot.joints.values()
-                if _is_tilted(joint)]
+    turning = [wheel.joint for wheel in found]
+    tilted = [(joint.name, _degrees(np.arcsin(min(abs(joint.axis[2]), 1.0)))) for joint in robot.joints.values()
+              if _is_tilted(joint) and not any(above in turning for above in robot.chain(joint))]
+    remarks += _of_each(tilted, "joint {} turns round on an axle {} from level, and is no wheel",
+                        "joints turn round on axles that are not level, and are no wheels", "a wheel's axle is level")
     return Ground(tuple(wheels), tuple(casters), height, tuple(remarks))
+
+
+def _of_each(found: Sequence[tuple[str, str]], one: str, several: str, remedy: str) -> list[str]:
+    """One line for all joints of a kind, each with its number."""
+    if not found:
+        return []
+    if len(found) == 1:
+        return [f"{one.format(*found[0])}; {remedy}"]
+    return [f"{several}: {listed([f'{name} ({number})' for name, number in found])}; {remedy}"]
 
 
 def _measured(robot: Robot, candidates: Sequence[Joint], answers: Answers, are_named: bool
@@ -161,6 +176,23 @@ def _check_known(robot: Robot, measured: Sequence[tuple[Joint, Reach | None]], a
     radius = f"--radius {lost[0].name}=METRES" if len(lost) == 1 else "--radius METRES"
     raise BadInput(f"{robot.path}: joint{'s' if lost[1:] else ''} {names}: {why}; give {radius}, or "
                    f"--wheel JOINT for each joint that is a wheel{_folder_of_meshes(robot, lost)}")
+
+
+def _without_virtual(robot: Robot, found: Sequence[FoundWheel], answers: Answers, are_named: bool
+                     ) -> tuple[list[FoundWheel], list[str]]:
+    """The wheels without those that only stand for others, as in the model of a car by one front and one rear wheel."""
+    def is_virtual(wheel: FoundWheel) -> bool:
+        shapes = [shape for link in robot.below(wheel.joint, rigid=False) for shape in link.shapes]
+        return (wheel.mass_kg <= 0.0 and wheel.inertia_kgm2 <= 0.0 and not any(shape.collides for shape in shapes)
+                and answer(answers.radius_m, wheel.name) is None)
+
+    virtual = [] if are_named else [wheel for wheel in found if is_virtual(wheel)]
+    if not virtual or len(virtual) == len(found):
+        return list(found), []
+    names = listed([wheel.name for wheel in virtual])
+    return [wheel for wheel in found if wheel not in virtual], [
+        f"wheels without mass that are only seen stand for others and are left out: {names}; --wheel JOINT for each "
+        "wheel would say otherwise"]
 
 
 def _apart(found: Sequence[FoundWheel], answers: Answers, are_named: bool
@@ -256,11 +288,19 @@ def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
         why += _unread(robot, candidates[:6])
         folder = _folder_of_meshes(robot, candidates[:6])
         return f"{why}; give --radius METRES, and --wheel JOINT for each wheel{folder}"
-    limited = [joint.name for joint in robot.joints.values() if joint.kind == HINGE and joint.is_limited
-               and abs(joint.axis[2]) <= LEVEL]
-    seen = f" ({', '.join(limited[:6])}: within limits)" if limited else ""
-    return (f"no joint turns round on a level axle (continuous, z up){seen}, so there is no wheel; give --wheel JOINT "
-            f"for each joint that is one{_inside(robot)}")
+    return (f"no joint turns round on a level axle (continuous, z up){_instead(robot)}, so there is no wheel; give "
+            f"--wheel JOINT for each joint that is one{_inside(robot)}")
+
+
+def _instead(robot: Robot) -> str:
+    """What joints do that might be taken for wheels."""
+    hinges = [joint for joint in robot.joints.values() if joint.kind == HINGE]
+    seen = {"within limits": [joint.name for joint in hinges if joint.is_limited and abs(joint.axis[2]) <= LEVEL],
+            "fixed": [joint.name for joint in robot.joints.values() if joint.kind == FIXED
+                      and any(word in each.lower() for word in WHEELS for each in (joint.name, joint.child))],
+            "on an upright axle": [joint.name for joint in hinges if not joint.is_limited and is_upright(joint)]}
+    told = [f"{listed(names)}: {what}" for what, names in seen.items() if names]
+    return f" ({'; '.join(told)})" if told else ""
 
 
 def _inside(robot: Robot) -> str:

@@ -44,10 +44,13 @@ class CanTable:
     remarks: tuple[str, ...]
     channel: str
 
-    def names_of(self, quantity: Quantity) -> dict[str, np.ndarray]:
-        """The signals that come on a quantity's channel, by "MESSAGE.signal"."""
-        wanted = quantity.channel or self.channel
-        return {name: values for (channel, name), values in self.values.items() if channel == wanted}
+    def names_on(self, channel: str) -> list[str]:
+        """The signals that come on a channel, as "MESSAGE.signal"."""
+        return [name for each, name in self.values if each == channel]
+
+    def column(self, quantity: Quantity, index: int, name: str) -> np.ndarray | None:
+        """A signal on the channel of a quantity's column; None where it does not come."""
+        return self.values.get((quantity.channel_of(index, self.channel), name))
 
 
 @dataclass
@@ -91,10 +94,11 @@ def database_of(columns: ColumnMap) -> Dbc:
     return load_dbc(path, f"{columns.path}: dbc: {path}")
 
 
-def signal_names(columns: ColumnMap, quantity: Quantity, database: Dbc) -> list[tuple[DbcEntry, str]]:
-    """The signals of a quantity; a name with # stands for all that the message has."""
-    found: list[tuple[DbcEntry, str]] = []
-    for column in map(str, quantity.columns):
+def signal_names(columns: ColumnMap, quantity: Quantity, database: Dbc) -> list[tuple[str, DbcEntry, str]]:
+    """The signals of a quantity with their channels; a name with # stands for all that the message has."""
+    found: list[tuple[str, DbcEntry, str]] = []
+    for index, column in enumerate(map(str, quantity.columns)):
+        channel = quantity.channel_of(index, columns.channel)
         name, signal = column.split(".")
         entry = _message(columns, quantity, database, name)
         known = [each.name for each in entry.c.signals]
@@ -106,7 +110,7 @@ def signal_names(columns: ColumnMap, quantity: Quantity, database: Dbc) -> list[
         if twice := next((each for each in there if known.count(each) > 1), None):
             raise BadInput(f"{columns.path}: {quantity.name}.columns: {name} has two signals {twice} in the DBC; "
                            "rename one of them there")
-        found += [(entry, each) for each in there]
+        found += [(channel, entry, each) for each in there]
     return found
 
 
@@ -138,8 +142,7 @@ def read_can(path: Path, columns: ColumnMap) -> CanTable:
 def _wants(columns: ColumnMap, database: Dbc) -> list[Want]:
     names: dict[tuple[str, str], list[tuple[DbcEntry, str, bool]]] = {}
     for quantity in columns.quantities.values():
-        channel = quantity.channel or columns.channel
-        for entry, signal in signal_names(columns, quantity, database):
+        for channel, entry, signal in signal_names(columns, quantity, database):
             names.setdefault((channel, entry.name), []).append((entry, signal, quantity.is_optional))
     found = []
     for (channel, _), each in names.items():
@@ -223,7 +226,9 @@ def _check_there(path: Path, columns: ColumnMap, wants: Sequence[Want], frames: 
         heard = sorted(want.heard)
         if not want.channel and len(heard) > 1:
             raise BadInput(f"{path}: {want.title} comes on the channels {', '.join(heard[:-1])} and {heard[-1]}; give "
-                           f"the right one in the map {columns.path}, such as channel = {_as_toml(heard[0])}")
+                           f"the right one in the map {columns.path}, such as channel = {_as_toml(heard[0])}"
+                           f"; equal devices on several need channels = [{', '.join(map(_as_toml, heard))}] under "
+                           "their quantity")
         if not want.needed or want.frames > len(want.short):
             continue
         if want.short:

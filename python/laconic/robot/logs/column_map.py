@@ -47,7 +47,11 @@ class Quantity:
     sign_from_set_speed: bool = False
     point: str = "origin"
     wrap: float | bool | None = None   # where the column begins again; True: after one turn, False: never, None: unsaid
-    channel: str = ""                  # CAN: of the bus that the frames are from; empty: the only one
+    channels: tuple[str, ...] = ()     # CAN: of the bus that the frames are from, one for all columns or for each
+
+    def channel_of(self, index: int, usual: str) -> str:
+        """The channel of a column; empty: the only one of the log."""
+        return self.channels[index if len(self.channels) > 1 else 0] if self.channels else usual
 
 
 @dataclass(frozen=True)
@@ -143,6 +147,21 @@ def _channel(table: Table, form: str) -> str:
     return str(value)
 
 
+def _channels(table: Table, form: str) -> tuple[str, ...]:
+    """The channel of all columns, or that of each: equal devices on several buses send the same identifiers."""
+    if not table.has("channels"):
+        return (channel,) if (channel := _channel(table, form)) else ()
+    if table.has("channel"):
+        table.fail("channels", "is given besides channel; keep one of them")
+    if form != "can":
+        table.fail("channels", 'has a meaning only with format = "can"; take it out, or give that format')
+    values = table.value("channels", ..., (list,), "a list of channels, one for each column")
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, (str, int)) or value == "":
+            table.fail("channels", f"holds {shown(value)}; give channels as the log writes them, such as 1 or can0")
+    return tuple(map(str, values))
+
+
 def _metadata(table: Table) -> str:
     if not table.has("metadata"):
         return ""
@@ -194,7 +213,8 @@ def _yaw_rate(table: Table, form: str) -> Quantity:
                    "and a scale that is not 0")
     is_optional, channel = table.flag("optional", False), _channel(table, form)
     table.done()
-    return Quantity(YAW_RATE, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional, channel=channel)
+    return Quantity(YAW_RATE, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional,
+                    channels=(channel,) if channel else ())
 
 
 def _column(table: Table, key: str) -> Column:
@@ -211,6 +231,8 @@ def _checked(table: Table, key: str, value: Any) -> Column:
 
 def _quantity(table: Table, name: str, count: int | None, form: str) -> Quantity:
     columns, first = _columns(table, name, count)
+    channels = _channels(table, form)
+    _check_twice(table, columns, channels, form)
     length = len(columns) if columns and not _is_numbered(columns) else None
     scales = _each(table, "scale", length, 1.0)
     signs = _each(table, "sign", length, 1.0)
@@ -238,7 +260,7 @@ def _quantity(table: Table, name: str, count: int | None, form: str) -> Quantity
         1.0 if gear is None else gear, wheels, first, table.flag("optional", False),
         table.flag("sign_from_set_speed", False) if name == "current" else False,
         table.choice("point", POINTS, "origin") if name == "pose" else "origin",
-        _wrap(table, (bool, int, float)) if name == "wheel_angle" else None, _channel(table, form))
+        _wrap(table, (bool, int, float)) if name == "wheel_angle" else None, channels)
     table.done()
     return found
 
@@ -263,10 +285,21 @@ def _columns(table: Table, name: str, count: int | None) -> tuple[tuple[Column, 
             table.fail("columns", f"has {len(columns)} entries; give 3, of x, y and heading, or 2, of x and y")
     elif not columns or len(columns) != (count or len(columns)):
         table.fail("columns", f"has {len(columns)} entries; give {count or 'one for each wheel'}")
-    for number, column in enumerate(columns):
-        if column in columns[:number]:
-            table.fail("columns", f"names {shown(column)} twice; give each column once")
     return columns, 0
+
+
+def _check_twice(table: Table, columns: tuple[Column, ...], channels: tuple[str, ...], form: str) -> None:
+    """Refuses a column that is named twice, unless its frames come from several buses."""
+    if len(channels) > 1 and len(channels) != len(columns):
+        table.fail("channels", f"has {len(channels)} entries; give {len(columns)}, one for each column")
+    each = channels if len(channels) > 1 else ("",) * len(columns)
+    pairs = list(zip(columns, each, strict=True))
+    for number, (column, channel) in enumerate(pairs):
+        if (column, channel) not in pairs[:number]:
+            continue
+        where = f" on channel {channel}" if channel else ""
+        remedy = ", or channels = [1, 2] for equal devices on two buses" if form == "can" and not channel else ""
+        table.fail("columns", f"names {shown(column)} twice{where}; give each column once{remedy}")
 
 
 def plain_number(value: float) -> float:

@@ -174,16 +174,24 @@ def _can_source(path: Path, columns: ColumnMap) -> Source:
     table = read_can(path, columns)
 
     def raw(quantity: Quantity) -> Raw | None:
-        known = table.names_of(quantity)
-        names = [str(name) for name in _numbered(quantity, list(known))]
-        if not names or any(name not in known for name in names):
+        names = [str(name) for name in _numbered(quantity, table.names_on(quantity.channel_of(0, table.channel)))]
+        found = [(name, column) for index, name in enumerate(names)
+                 if (column := table.column(quantity, index, name)) is not None]
+        if not found or len(found) < len(names):
             if quantity.is_optional:
                 return None
             raise BadInput(f"{path}: has no signal {quantity.columns[0]!r} (for {quantity.name}); correct the map")
-        return np.column_stack([known[name] for name in names]), names
+        return np.column_stack([column for _, column in found]), _labels(quantity, names)
 
     return Source(path, table.time_s, raw, lambda row: table.places[row], table.is_row, table.hold_s,
                   remarks=table.remarks)
+
+
+def _labels(quantity: Quantity, names: Sequence[str]) -> list[str]:
+    """The signals, with their channels where these differ."""
+    if len(quantity.channels) < 2:
+        return list(names)
+    return [f"{name} on channel {channel}" for name, channel in zip(names, quantity.channels, strict=True)]
 
 
 class _Reader:

@@ -1,4 +1,4 @@
-"""Environments for reinforcement learning on the batch core, by the interface of Gymnasium; docs/learn.md.
+"""Environments for reinforcement learning on the batch core, by the interface of Gymnasium; docs/batch.md.
 
 Importing this room registers `laconic/DriveToPose-v0`: gymnasium.make() gives one robot, make_vec() many in one batch.
 """

@@ -1,4 +1,4 @@
-"""What driving to a pose is: how observations, rewards and ends follow from the motion; docs/learn.md has the units.
+"""What driving to a pose is: how observations, rewards and ends follow from the motion; docs/batch.md has the units.
 
 Everything here works on numbers of many robots at once, shape (lanes,) each, and knows nothing of Gymnasium.
 """

@@ -21,7 +21,7 @@ that step: the step is of first order.
 
 Choose the lowest point that fits your run time. The core refused steps without a point.
 
-The first table compares the error that a run estimates of itself (docs/error-estimate.md) with the true one, where that
+The first table compares the error that a run estimates of itself (docs/accuracy.md) with the true one, where that
 is above the reference's own error and rounding.
 """
 
@@ -80,7 +80,7 @@ Scene S1 with pose and wheel angles under QEMU (-icount): instructions, not cycl
 Code: the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: worst
 path of the call graph, and the most that a run was seen to use. Where the processor has no double-precision FPU (all
 but the M7) double is emulated; on the M3 and M4 soft_double.c adds and subtracts, since libgcc rounds some differences
-wrongly (docs/soft-double.md).
+wrongly (docs/c.md).
 """
 
 SCENES = """

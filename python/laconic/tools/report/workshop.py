@@ -154,7 +154,7 @@ class Workshop:
     """Builds into one folder; a file of the core is compiled once per target, scalar type and optimisation.
 
     Boards without double precision in hardware get soft_double.c with it, unless `soft_double` is False: then libgcc's
-    adder, which has its faults (docs/soft-double.md).
+    adder, which has its faults (docs/c.md).
     """
 
     def __init__(self, folder: Path, core_dir: Path = SOURCE_DIR / "core_c", *, soft_double: bool = True) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,8 @@ from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, reason_of, shown
 from laconic.scene import MOST_STEPS
 from laconic.scene.table import Table
+
+ARTICULATED = "articulated-1"  # of a file with vehicles on hinges
 
 
 @dataclass(frozen=True)
@@ -52,12 +54,20 @@ def read_reference(path: Path) -> list[Table]:
     if not isinstance(content, dict):
         raise BadInput(f"{path}: contains no object with cases; give a reference file")
     top = Table(path, "", content)
-    if top.whole("format") != 1:
-        top.fail("format", f"is {top.whole('format')}; this program reads format 1")
+    if top.peek("format") == ARTICULATED:
+        top.has("format")
+    elif top.whole("format") != 1:
+        top.fail("format", f'is {top.whole("format")}; this program reads format 1 and "{ARTICULATED}"')
     cases = list(top.tables("cases"))
     if not cases:
         top.fail("cases", "holds none, so there is nothing to compare; give at least one")
     return cases
+
+
+def is_articulated(case: Table) -> bool:
+    """Whether a case is of a file with vehicles on hinges, which name their bodies."""
+    vehicle = case.peek("vehicle")
+    return isinstance(vehicle, dict) and "bodies" in vehicle
 
 
 def vehicle_of(case: Table) -> dict[str, Any]:
@@ -179,6 +189,6 @@ def verify_case(core: Core, case: Table, method: str, step_s: float, advance: Ca
     return CaseResult(name, "ok", nu, pose, wheels, seconds)
 
 
-def as_json(results: list[CaseResult], method: str, step_s: float, real: str) -> dict[str, Any]:
+def as_json(results: Sequence[Any], method: str, step_s: float, real: str) -> dict[str, Any]:
     """All results for JSON."""
     return {"method": method, "step_s": step_s, "real": real, "cases": [asdict(each) for each in results]}

@@ -1,0 +1,89 @@
+"""Models inside an SDF model: their links, joints and frames become those of the model around them.
+
+As in SDFormat their names begin with the inner model's name and "::"; what is relative to nothing in the inner model is
+relative to its frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+from laconic.errors import BadInput
+from laconic.robot.importer.xml_file import Element
+
+OWN = "__model__"
+DEEPEST = 20  # models inside models
+BETWEEN = "::"
+OUTSIDE = ("world", "__root__")
+PARTS = ("link", "joint", "frame")
+ENDS = ("parent", "child", "gearbox_reference_body")
+REFERENCES = ("relative_to", "attached_to", "expressed_in")
+
+
+def flatten(path: Path, model: Element, depth: int = 1) -> None:
+    """Takes the parts of models inside into the model itself."""
+    inside = model.findall("model")
+    if inside and depth > DEEPEST:
+        raise BadInput(f"{path}: has models inside models, {depth} deep; more than {DEEPEST} are not read")
+    for inner in inside:
+        flatten(path, inner, depth + 1)
+        model.remove(inner)
+        names = {each.get("name") for each in model if each.tag in PARTS}
+        model.extend(list(_parts(path, inner)))
+        if inner.get("name") not in names:
+            model.append(_frame(inner.get("name", ""), {"attached_to": f"{inner.get('name')}{BETWEEN}{OWN}"}))
+
+
+def _parts(path: Path, inner: Element) -> Iterator[Element]:
+    """Of a model without models inside, renamed for the model around it."""
+    name = inner.get("name")
+    if not name:
+        raise BadInput(f"{path}: a <model> inside another has no name; give one")
+    if inner.get("placement_frame"):
+        raise BadInput(f"{path}: model {name} has a placement_frame, which is not read; give the pose of its own frame")
+    joints = {each.get("name", "") for each in inner.findall("joint")}
+    own = _frame(f"{name}{BETWEEN}{OWN}")
+    own.extend(inner.findall("pose"))
+    yield own
+    for part in inner:
+        if part.tag in (*PARTS, "plugin", "include"):
+            _rename(part, name, joints)
+            yield part
+
+
+def _frame(name: str, attributes: dict[str, str] | None = None) -> Element:
+    return ElementTree.Element("frame", {"name": name, **(attributes or {})})
+
+
+def _rename(part: Element, model: str, joints: set[str]) -> None:
+    """Every name of the inner model in a part of it."""
+    def full(name: str) -> str:
+        return name if name in OUTSIDE else f"{model}{BETWEEN}{name}"
+
+    if part.tag == "plugin":  # which names joints in texts
+        for each in part.iter():
+            each.text = " ".join(full(word) if word in joints else word for word in (each.text or "").split())
+        return
+    if part.tag in PARTS and part.get("name"):
+        part.set("name", full(part.get("name", "")))
+    for each in part.iter():
+        for key in REFERENCES:
+            if each.get(key):
+                each.set(key, full(each.get(key, "")))
+        if each.tag in ENDS and (each.text or "").strip():
+            each.text = full((each.text or "").strip())
+        if each.tag == "mimic" and each.get("joint"):
+            each.set("joint", full(each.get("joint", "")))
+    if part.tag in ("link", "frame"):
+        _place(part, f"{model}{BETWEEN}{OWN}")
+
+
+def _place(part: Element, frame: str) -> None:
+    """Relative to the inner model, unless it is relative to something in it."""
+    pose = part.find("pose")
+    if pose is None:
+        pose = ElementTree.SubElement(part, "pose")
+    if not pose.get("relative_to") and not (part.tag == "frame" and part.get("attached_to")):
+        pose.set("relative_to", frame)
