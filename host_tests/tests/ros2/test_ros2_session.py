@@ -4,29 +4,24 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from cyclonedds._clayer import ddspy_write
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
-from cyclonedds.core import DDSException
-from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy
 
 import laconic
 import made_up_robots
 from laconic.cli.main import run
 from laconic.errors import BadInput
-from laconic.ros2.maps import Map
 from laconic.ros2.messages import new, type_hash
 from laconic.ros2.session import Ros2Options, Session, write_record
-from laconic.ros2.wire import LATCHED, USUAL, Participant, Quality, check_name, polled, ros_type
+from laconic.ros2.wire import LATCHED, Quality, check_name, polled, ros_type
 from laconic.scene import build_scene, read_scene
 from laconic.scene.scene_tables import scene_tables
-from ros2_support import DOMAIN, WALL_NS, last, rig_of
+from ros2_support import DOMAIN, WALL_NS, announced, last, rig_of
 
 TWIST = "geometry_msgs/msg/Twist"
 ODOMETRY, TF = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
@@ -142,11 +137,6 @@ def test_other_frames_by_name() -> None:
 
 
 # ---- names, quality of service, graph
-
-def announced(participant: Participant, topic: Any) -> dict[str, Any]:
-    found = BuiltinDataReader(participant.dds, topic).take(N=500)
-    return {each.topic_name: each for each in found if hasattr(each, "topic_name") and each.topic_name}
-
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy", "kilted"])
 def test_writers_are_announced_as_ros_does(distribution: str) -> None:
@@ -326,276 +316,6 @@ def test_a_placed_robot_ends_the_record(tmp_path: Path) -> None:
         rig.session.base.place(0, 1.0, 1.0, 0.0)
         rig.drive(10, 0.1)
         assert write_record(rig.session) == 10 * 20
-
-
-# ---- faults: one line each, and the robot stops
-
-def test_silence_stops_the_robot() -> None:
-    with rig_of() as rig:
-        rig.drive(50, 0.2)
-        rig.turn(24)                        # as long as the watchdog waits
-        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.2, abs=1e-3)
-        rig.turn(40)
-        assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3
-        assert rig.lines == ["/laconic: cmd_vel was silent for 0.5 s, so the robot stops"]
-
-
-def test_a_stop_command_and_silence_after_it_are_no_event() -> None:
-    with rig_of() as rig:
-        rig.drive(50, 0.2)
-        rig.drive(1, 0.0)
-        rig.turn(60)
-        assert rig.lines == []
-
-
-@pytest.mark.parametrize("number", [float("nan"), float("-inf"), 1e300])
-def test_a_command_that_is_not_finite_is_ignored_and_told(number: float) -> None:
-    with rig_of() as rig:
-        rig.drive(20, 0.1)
-        rig.drive(60, number)
-        assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3  # the watchdog heard nothing new
-        assert [line.partition(": ")[2][:47] for line in rig.lines] == [
-            "a command on cmd_vel has a number that is infin", "cmd_vel was silent for 0.5 s, so the robot stop"]
-        assert rig.session.told.counts["/laconic: not finite"] == 60
-
-
-def test_two_commanders_are_told_and_the_last_counts() -> None:
-    with rig_of() as rig:
-        one, other = (rig.node.publisher("cmd_vel", TWIST) for _ in range(2))
-
-        def both() -> None:
-            one.write(rig.twist(0.05))
-            other.write(rig.twist(0.1))
-
-        rig.turn(60, both)
-        assert rig.lines == ["/laconic: two publishers command cmd_vel at once; the last command counts, so stop one "
-                             "of them"]
-        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
-
-
-def test_a_publisher_of_another_type_is_told() -> None:
-    with rig_of() as rig:
-        rig.node.publisher("cmd_vel", "std_msgs/msg/String").write(new("std_msgs/msg/String", data="go"))
-        rig.turn(60)
-        assert rig.lines == ["/laconic: a publisher on cmd_vel sends std_msgs/msg/String, which is not heard; send "
-                             "Twist or TwistStamped"]
-        assert rig.session.base.look()[0].x_m == 0.0
-
-
-def test_what_a_command_asks_in_vain_is_told() -> None:
-    with rig_of() as rig:
-        writer, message = rig.node.publisher("cmd_vel", TWIST), rig.twist(0.5, 0.3)
-        message.linear.z = 1.0
-        rig.turn(10, lambda: writer.write(message))
-        assert [line.removeprefix("/laconic: ") for line in rig.lines] == [
-            "a command on cmd_vel has linear.z, angular.x or angular.y, which a robot on the ground leaves out",
-            "cmd_vel: linear.y = 0.3 is impossible for these wheels and becomes 0",
-            "cmd_vel: a speed of 0.5 m/s is limited to 0.22 m/s"]
-
-
-def test_a_peer_that_goes_and_comes_again_drives_again() -> None:
-    with rig_of() as rig:
-        rig.drive(30, 0.1)
-        rig.peer.close()
-        rig.turn(80)
-        assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3
-        with Participant(DOMAIN, is_local=True) as again:
-            rig.node = again.node("peer")
-            rig.drive(60, 0.1)
-        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
-
-
-def test_messages_that_raise_in_the_reader_are_counted_and_passed_over() -> None:
-    class Reader:
-        def __init__(self) -> None:
-            self.left = ["bad", "good", "bad"]
-
-        def take(self, N: int) -> list[Any]:  # noqa: N803
-            if not self.left:
-                return []
-            if self.left.pop(0) == "bad":
-                raise ValueError("bytes of another type")
-            return [new(TWIST)]
-
-    wrong: list[int] = []
-    assert len(polled(Reader(), lambda: wrong.append(1))) == 1
-    assert len(wrong) == 2
-
-
-def test_a_refused_step_is_told_and_reset_puts_the_robot_back() -> None:
-    scene = read_scene("robotino2")
-    scene = replace(scene, base=laconic.scene.base.BaseTable(gain_Vs_per_rad=1e306))
-    with rig_of(scene) as rig:
-        rig.drive(5, 0.5)
-        assert len(rig.lines) == 1 and "the robot stands until reset or set_pose" in rig.lines[0]
-        assert rig.session.refusals
-        rig.call("/laconic/reset", "std_srvs/srv/Empty")
-        assert not rig.session.refusals and rig.session.base.look()[0].x_m == 0.0
-
-
-# ---- parameters and services
-
-def test_parameters_are_listed_and_read() -> None:
-    with rig_of(is_sim_time=True) as rig:
-        kind = "rcl_interfaces/srv/"
-        names = rig.call("/laconic/list_parameters", f"{kind}ListParameters").result.names
-        assert "use_sim_time" in names and sorted(names) == list(names)
-        values = rig.call("/laconic/get_parameters", f"{kind}GetParameters",
-                          names=["use_sim_time", "rate_hz", "scene", "nothing"]).values
-        assert [each.type for each in values] == [1, 3, 4, 0]
-        assert (values[0].bool_value, values[1].double_value, values[2].string_value) == (
-            True, 50.0, "TurtleBot3 Burger")
-        types = rig.call("/laconic/get_parameter_types", f"{kind}GetParameterTypes", names=["watchdog_s"]).types
-        assert list(types) == [3]
-        described = rig.call("/laconic/describe_parameters", f"{kind}DescribeParameters",
-                             names=["watchdog_s", "scene"]).descriptors
-        assert [each.read_only for each in described] == [False, True]
-
-
-def test_the_watchdog_is_the_parameter_that_can_be_set() -> None:
-    def parameter(name: str, **value: Any) -> Any:
-        return new("rcl_interfaces/msg/Parameter", name=name, value=new("rcl_interfaces/msg/ParameterValue", **value))
-
-    with rig_of() as rig:
-        given = [parameter("watchdog_s", type=3, double_value=0.2), parameter("scene", type=4, string_value="x"),
-                 parameter("watchdog_s", type=3, double_value=float("nan")),
-                 parameter("use_sim_time", type=1, bool_value=False), parameter("other", type=1)]
-        results = rig.call("/laconic/set_parameters", "rcl_interfaces/srv/SetParameters", parameters=given).results
-        assert [each.successful for each in results] == [True, False, False, True, False]
-        assert rig.session.robots[0].watchdog_s == 0.2
-        whole = rig.call("/laconic/set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically",
-                         parameters=[parameter("watchdog_s", type=3, double_value=0.9), given[1]]).result
-        assert not whole.successful and rig.session.robots[0].watchdog_s == 0.2
-
-
-def test_reset_and_set_pose() -> None:
-    with rig_of() as rig:
-        rig.drive(50, 0.2)
-        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
-        pose.pose.pose.position.x, pose.pose.pose.position.y = 2.0, -1.0
-        pose.pose.pose.orientation.z = pose.pose.pose.orientation.w = math.sqrt(0.5)
-        rig.call("/laconic/set_pose", "robot_localization/srv/SetPose", pose=pose)
-        seen = rig.session.base.look()[0]
-        assert (seen.x_m, seen.y_m, seen.heading_rad) == pytest.approx((2.0, -1.0, math.pi / 2))
-        assert rig.session.base.odometry[0].x_m > 0.1
-        rig.call("/laconic/reset", "std_srvs/srv/Empty")
-        assert rig.session.base.look()[0].x_m == rig.session.base.odometry[0].x_m == 0.0
-
-
-def test_services_have_the_hashes_of_their_messages() -> None:
-    with rig_of() as rig:
-        found = announced(rig.peer, BuiltinTopicDcpsPublication)
-        reply = found["rr/laconic/get_parametersReply"]
-        assert reply.type_name == "rcl_interfaces::srv::dds_::GetParameters_Response_"
-        data = bytes(reply.qos[Policy.Userdata].data).decode()
-        assert re.fullmatch(rf"serviceid=[0-9a-f]{{16}};typehash="
-                            rf"{type_hash('rcl_interfaces/srv/GetParameters_Response')};", data)
-
-
-# ---- loopback
-
-def box_map(folder: Path) -> Path:
-    """A room of 4 m by 2 m with walls, cells of 5 cm, its lower left corner at (-2, -1)."""
-    cells = np.full((40, 80), 254, np.uint8)
-    cells[0, :] = cells[-1, :] = cells[:, 0] = cells[:, -1] = 0
-    (folder / "room.pgm").write_bytes(b"P5\n80 40\n255\n" + cells.tobytes())
-    path = folder / "room.yaml"
-    path.write_text("image: room.pgm\nresolution: 0.05\norigin: [-2.0, -1.0, 0.0]\nnegate: 0\n"
-                    "occupied_thresh: 0.65\nfree_thresh: 0.196\nmode: trinary  # as map_saver writes\n")
-    return path
-
-
-def test_loopback_localizes_by_the_true_pose() -> None:
-    scene = replace(read_scene("turtlebot3_burger"), base=laconic.scene.base.BaseTable(believed_size=0.8))
-    with rig_of(scene, is_loopback=True) as rig:
-        reader, truths = rig.node.subscription("/tf", TF), rig.node.subscription("/ground_truth/odom", ODOMETRY)
-        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
-        pose.pose.pose.position.x, pose.pose.pose.orientation.z, pose.pose.pose.orientation.w = 1.0, 0.6, 0.8
-        rig.node.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped").write(pose)
-        rig.drive(100, 0.2, 0.5)
-        to_base, to_odom = last(reader).transforms
-        assert (to_odom.header.frame_id, to_odom.child_frame_id) == ("map", "odom")
-        yaw, there = yaw_of(to_odom.transform.rotation), to_odom.transform.translation
-        here, truth = to_base.transform.translation, last(truths).pose.pose
-        x = there.x + math.cos(yaw) * here.x - math.sin(yaw) * here.y
-        y = there.y + math.sin(yaw) * here.x + math.cos(yaw) * here.y
-        assert (x, y) == pytest.approx((truth.position.x, truth.position.y), abs=1e-12)
-        assert math.sin(yaw + yaw_of(to_base.transform.rotation) - yaw_of(truth.orientation)) == pytest.approx(0.0)
-        assert abs(yaw - 2.0 * math.atan2(0.6, 0.8)) > 0.05  # the odometry has drifted, and map → odom makes up for it
-
-
-def test_the_scan_shows_the_walls_of_the_map(tmp_path: Path) -> None:
-    with rig_of(is_loopback=True, map_file=box_map(tmp_path)) as rig:
-        grid = last(rig.node.subscription("/map", "nav_msgs/msg/OccupancyGrid", LATCHED))
-        assert (grid.info.width, grid.info.height, grid.info.origin.position.x) == (80, 40, -2.0)
-        assert set(grid.data) == {0, 100}
-        reader = rig.node.subscription("/scan", "sensor_msgs/msg/LaserScan")
-        rig.session.base.place(0, 0.5, 0.0, math.pi / 2)
-        rig.turn(11)
-        scans = polled(reader)
-        assert len(scans) == 3  # ten a second
-        scan = scans[-1]
-        at = {round(math.degrees(scan.angle_min + number * scan.angle_increment)): distance
-              for number, distance in enumerate(scan.ranges)}
-        for degrees, distance in ((0, 0.95), (90, 2.45), (-90, 1.45), (-180, 0.95)):
-            assert at[degrees] == pytest.approx(distance, abs=0.06)
-
-
-def test_outside_the_map_a_scan_hits_nothing(tmp_path: Path) -> None:
-    world = Map.read(box_map(tmp_path))
-    assert np.isinf(world.ranges(50.0, 50.0, np.array([0.0, 1.0]))).all()
-
-
-@pytest.mark.parametrize("old, new_text, message", [
-    ("room.pgm", "other.png", "other.png: cannot be read"), ("resolution: 0.05", "resolution: -1", "resolution: is -1"),
-    ("[-2.0, -1.0, 0.0]", "[0, 0, 0.5]", "origin: has the yaw 0.5"), ("image: room.pgm", "", "image: is missing"),
-    ("[-2.0, -1.0, 0.0]", "here", "origin: is here"), ("0.65", "much", "occupied_thresh: is much")])
-def test_a_wrong_map_is_one_line(tmp_path: Path, old: str, new_text: str, message: str) -> None:
-    path = box_map(tmp_path)
-    path.write_text(path.read_text().replace(old, new_text))
-    with pytest.raises(BadInput, match=re.escape(message)):
-        Map.read(path)
-
-
-def test_a_peer_that_does_not_keep_up_costs_messages_and_not_the_run() -> None:
-    class Full:
-        def write(self, _: Any) -> None:
-            raise DDSException(DDSException.DDS_RETCODE_TIMEOUT, "the history is full")
-
-    with rig_of() as rig:
-        rig.drive(10, 0.1)
-        rig.session.robots[0]._imu._writer = Full()
-        rig.turn(120)
-        assert rig.lines[-1].startswith("/laconic: a peer does not keep up, so ")
-        assert rig.session.robots[0].left_out() == 120
-        assert rig.session.cycles == 130
-
-
-def test_random_bytes_end_no_run_and_drive_at_most_as_commands(tmp_path: Path) -> None:
-    rng = np.random.default_rng(39)
-    with rig_of(is_loopback=True) as rig:
-        topics = {"cmd_vel": TWIST, "/cmd_vel": "geometry_msgs/msg/TwistStamped",
-                  "initialpose": "geometry_msgs/msg/PoseWithCovarianceStamped"}
-        writers = [rig.node.publisher(topic, kind) for topic, kind in topics.items()]
-        for service, kind in (("set_parameters", "rcl_interfaces/srv/SetParameters"),
-                              ("get_parameters", "rcl_interfaces/srv/GetParameters"), ("reset", "std_srvs/srv/Empty"),
-                              ("set_pose", "robot_localization/srv/SetPose")):
-            writers.append(rig.peer._endpoint(DataWriter, f"rq/laconic/{service}Request", f"{kind}_Request", USUAL,
-                                              of_service="clientid=1;"))
-
-        def noise() -> None:
-            for writer in writers:
-                data = rng.integers(0, 256, rng.integers(0, 200), np.uint8).tobytes()
-                data = data if rng.random() < 0.5 else bytes(len(data))[:-8] + data[-8:]
-                ddspy_write(writer._ref, b"\x00\x01\x00\x00" + data + bytes(-len(data) % 4))
-
-        rig.turn(400, noise)
-        seen = rig.session.base.look()[0]
-        assert rig.session.cycles == 400 and np.isfinite([seen.x_m, seen.y_m, *seen.velocity]).all()
-        assert math.hypot(*seen.velocity[:2]) < 0.25
-        rig.call("/laconic/reset", "std_srvs/srv/Empty")
-        rig.drive(60, 0.1)
-        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
 
 
 def test_an_imported_robot_has_the_joints_of_its_urdf(tmp_path: Path) -> None:

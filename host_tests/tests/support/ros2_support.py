@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from cyclonedds.builtin import BuiltinDataReader
+
 from laconic.ros2.messages import message_class, new
 from laconic.ros2.session import Clock, Ros2Options, Session
 from laconic.ros2.wire import Node, Participant, polled, topic_name
@@ -95,3 +97,9 @@ def rig_of(scene: str | Scene = "turtlebot3_burger", **options: Any) -> Iterator
 def last(reader: Any) -> Any:
     """The newest message."""
     return polled(reader, most=1000)[-1]
+
+
+def announced(participant: Participant, topic: Any) -> dict[str, Any]:
+    """Endpoints by the names of their topics, as discovery has them."""
+    found = BuiltinDataReader(participant.dds, topic).take(N=500)
+    return {each.topic_name: each for each in found if hasattr(each, "topic_name") and each.topic_name}

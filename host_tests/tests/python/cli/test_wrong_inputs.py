@@ -20,7 +20,7 @@ TOML_FAULTS = {"binary.toml": "no text in UTF-8", "nul.toml": "no valid TOML", "
 LETTERS = {"\\u0001": "the control character '\\x01'", "\\u001b": "the control character '\\x1b'",
            "\\u2028": "the control character '\\u2028'", "\\uffff": "the unprintable character '\\uffff'",
            "\\u0008": "the control character '\\x08'", "\\U0001fffe": "the unprintable character '\\U0001fffe'"}
-OF_SCENE = ("simulate", "derive", "fmu --fmi 2", "analyse", "trim", "rig", "demo", "report --scene")
+OF_SCENE = ("simulate", "derive", "fmu --fmi 2", "analyse", "trim", "rig", "ros2", "demo", "report --scene")
 
 WRONG = {
     # words of the command line
@@ -59,6 +59,16 @@ WRONG = {
     "play robotino2 --listen 0 --drives canopen --bus-fault los=1": "did you mean loss?",
     "play robotino2 --listen 0 --dbc nowhere.dbc --map nowhere.toml": "nowhere.toml",
     "play robotino2 --listen 0 --drives canopen --log ''": EMPTY, "play robotino2 --eds a.eds --listen 0": "--listen",
+    "ros2": "SCENE", "ros2 nowhere": "no such scene", "ros2 robotino2 --rate nan": "--rate: nan",
+    "ros2 robotino2 --rate 3000": "give 1000 Hz", "ros2 robotino2 --step 0": "--step", "ros2 s1 --robots 0": "--robots",
+    "ros2 robotino2 --domain 233": "0 to 232", "ros2 robotino2 --distro foxy": "--distro",
+    "ros2 robotino2 --namespace 'a b'": "--namespace", "ros2 robotino2 --frame x=y": "--frame: x=y",
+    "ros2 robotino2 --speed 2": "add --sim-time", "ros2 robotino2 --duration nan": "--duration",
+    "ros2 robotino2 --map folder --loopback": "folder", "ros2 robotino2 --map good.toml": "--map",
+    "ros2 robotino2 --loopback --map good.toml": "good.toml: image: is missing", "ros2 robotino2 --urdf ''": EMPTY,
+    "ros2 robotino2 --urdf binary.toml": "binary.toml", "ros2 robotino2 --record good.csv": ".toml",
+    "ros2 robotino2 --robots 2 --record a.toml": "--record", "ros2 robotino2 --spacing -1": "--spacing",
+    "ros2 robotino2 --rmw zenoh": "--rmw", "ros2 paper_caster --rate 7": "--rate",
     "simulate skid_steer --enclose": "ground.friction_coefficient: wheels stick and slip",
     "simulate switched.toml --enclose": "vehicle.wheel[2].motor_circuit", "verify nowhere --enclose": "no such scene",
     "simulate limited.toml --enclose": "vehicle.drive: limits switch", "verify list.json --enclose": "no object",
