@@ -10,14 +10,10 @@ static inline const fmu_variable *row_of(uint32_t reference) {
     return &fmu_variables[row];
 }
 
-static inline uint32_t size_of(const fmu_instance *instance, const fmu_variable *variable) {
-    return variable->size != 0 ? variable->size : FMU_MODEL_ARRAY_SIZE(&instance->model);
-}
-
 /* Writes the offsets of the values of a reference and returns their number; 0: not by the fast path. */
 static size_t offsets_of(const fmu_instance *instance, const fmu_variable *variable, uint32_t element, uint32_t *offset,
                          size_t room) {
-    const uint32_t size = size_of(instance, variable), first = element != 0 ? element - 1 : 0;
+    const uint32_t size = fmu_size_of(&instance->model, variable), first = element != 0 ? element - 1 : 0;
     const uint32_t count = element != 0 ? 1 : size;
     if (element > size || count > room) return 0;
     for (uint32_t i = 0; i < count; i++) offset[i] = variable->offset + (first + i) * variable->stride;

@@ -22,6 +22,9 @@
 #include "lifecycle.h"
 #include "model.h"
 
+/* Start values and tolerances would be off by 1e-7 or 0. */
+typedef char fmu_needs_compiling_without_fsingle_precision_constant[sizeof(1.0) == sizeof(double) ? 1 : -1];
+
 typedef enum fmu_status { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } fmu_status;
 
 typedef enum fmu_kind { FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION } fmu_kind;
@@ -169,13 +172,24 @@ typedef struct fmu_variable {
     uint32_t offset; /* in fmu_model                                          */
     uint16_t name;   /* in fmu_variable_names: a pointer would cost every FMU a relocation       */
     uint16_t stride; /* from one element to the next                          */
-    uint16_t size;   /* elements; 0: FMU_MODEL_ARRAY_SIZE of them  */
+    uint16_t size;   /* elements; 0: FMU_MODEL_ARRAY_SIZE of them, FMU_OTHER_SIZE: see below */
     uint8_t type, access;
     bool intermediate;  /* may be got or set between internal steps (FMI 3) */
     double least, most; /* what it may be set to                              */
     uint32_t group;     /* to compute before it is read, see model.h */
     uint32_t tangent;   /* in fmu_tangent; UINT32_MAX: not differentiated       */
 } fmu_variable;
+
+/* Models with arrays of two lengths have a macro FMU_MODEL_OTHER_ARRAY_SIZE, which gives that of the others. */
+#define FMU_OTHER_SIZE 65535U
+
+/* Its number of elements in this instance. */
+static inline uint32_t fmu_size_of(const fmu_model *model, const fmu_variable *variable) {
+#ifdef FMU_MODEL_OTHER_ARRAY_SIZE
+    if (variable->size == FMU_OTHER_SIZE) return FMU_MODEL_OTHER_ARRAY_SIZE(model);
+#endif
+    return variable->size != 0 ? variable->size : FMU_MODEL_ARRAY_SIZE(model);
+}
 
 extern const fmu_variable fmu_variables[];
 extern const char fmu_variable_names[];

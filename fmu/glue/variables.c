@@ -22,7 +22,7 @@ bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) 
     uint32_t size;
     if (row >= fmu_variable_count || (row != reference && element == 0)) return false;
     slot->variable = &fmu_variables[row];
-    size = slot->variable->size != 0 ? slot->variable->size : FMU_MODEL_ARRAY_SIZE(&instance->model);
+    size = fmu_size_of(&instance->model, slot->variable);
     if (element > size) return false;
     slot->first = element == 0 ? 0 : element - 1;
     slot->count = element == 0 ? size : 1;

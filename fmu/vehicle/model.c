@@ -1,6 +1,5 @@
 /* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. */
-#include <stdio.h>
-
+#include "core_words.h"
 #include "estimate_part.h"
 #include "friction_part.h"
 #include "grip_warning.h"
@@ -8,39 +7,12 @@
 #include "model_interface.h"
 #include "sensors_part.h"
 
-/* A larger quotient is no number of steps: laconic_steps_in refuses it. */
-#define MOST_STEPS 9e15
-
 /* Internal steps between two looks at whether the importer cancels them: well below a second. */
 #define SLICE_STEPS 1024U
 
 /* These do not compile unless the core computes in double and a wheel_kind can be read as an int32_t. */
 typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
 typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
-
-/* laconic_message names a field as a scene does; the log of an FMU names the variable. */
-static void explain(char *text, size_t size, const laconic_refusal *why) {
-    char reason[256];
-    const char *name = laconic_field_name(why->field);
-    laconic_explanation(why, reason, sizeof reason);
-    if (why->item > 0)
-        (void)snprintf(text, size, "%s[%d]: %s", name, (int)why->item, reason);
-    else
-        (void)snprintf(text, size, "%s%s%s", name, *name != '\0' ? ": " : "", reason);
-}
-
-static fmu_status refuse_with(const fmu_instance *instance, const laconic_refusal *why, const char *when) {
-    char text[320];
-    explain(text, sizeof text, why);
-    return fmu_refuse(instance, "%s: %s", when, text);
-}
-
-static fmu_status discard_with(const fmu_instance *instance, const laconic_refusal *why) {
-    char text[320];
-    explain(text, sizeof text, why);
-    return fmu_log(instance, FMU_DISCARD, FMU_LOG_DISCARD, "the step at %.15g s is refused: %s",
-                   fmu_clock_now(&instance->clock), text);
-}
 
 void fmu_model_made(fmu_model *model) { model->wheels_have_states = fmu_vehicle_slips(&model->vehicle); }
 
@@ -70,7 +42,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     if (status == LACONIC_OK) fmu_sensors_find(self);
     if (status == LACONIC_OK) status = fmu_sensors_start(self, &why);
     if (FMU_MODEL_ESTIMATES && status == LACONIC_OK) status = fmu_estimate_start(self, &why);
-    if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
+    if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "this vehicle cannot start");
     if ((self->continuous && fmu_friction_refuses(instance, &self->vehicle)) || fmu_sensors_refuse(instance))
         return FMU_ERROR;
     if (FMU_MODEL_ESTIMATES && fmu_estimate_refuses(instance)) return FMU_ERROR;
@@ -103,7 +75,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     laconic_status status = laconic_plant_change(&plant, &self->vehicle, &why);
     if (status == LACONIC_OK) status = fmu_friction_prepare(&self->vehicle, &contact, &rolling, &why);
     if (FMU_MODEL_ESTIMATES && status == LACONIC_OK) status = fmu_estimate_change(self, &plant, &why);
-    if (status != LACONIC_OK) return refuse_with(instance, &why, "the changed vehicle is refused");
+    if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "the changed vehicle is refused");
     plant.integrator.method = self->plant.integrator.method;
     self->plant = plant;
     self->contact = contact;
@@ -215,36 +187,9 @@ static laconic_status set_step(fmu_model *self, double step_s, laconic_refusal *
 
 fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    if (set_step(&instance->model, step_s, &why) != LACONIC_OK) return discard_with(instance, &why);
+    if (set_step(&instance->model, step_s, &why) != LACONIC_OK) return fmu_discard_with(instance, &why);
     instance->model.stand_in = false;
     return FMU_OK;
-}
-
-/* The whole number of internal steps nearest to step_s that does not pass the stop time, in seconds; 0: there is
- * none. */
-static double nearest_step(const fmu_instance *instance, double step_s, double own_s) {
-    const double ratio = step_s / own_s;
-    if (!(ratio < MOST_STEPS)) return 0.0;
-    const uint64_t rounded = ratio < 1.0 ? 1 : (uint64_t)(ratio + 0.5);
-    const double end_s = instance->model.time_s + own_s * (double)rounded;
-    /* step_s itself does not pass the stop time, so one step less does not */
-    return own_s * (double)(fmu_clock_passes_stop(&instance->clock, end_s, own_s) ? rounded - 1 : rounded);
-}
-
-fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
-    laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
-    const double nearest = nearest_step(instance, step_s, own_s);
-    const int digits = fmu_digits(step_s, nearest, nearest);
-    if (nearest > 0.0)
-        return fmu_refuse(instance,
-                          "the communication step of %.*g s is no whole number of internal steps of %.15g s "
-                          "(step_s); nearest that is: %.*g s",
-                          digits, step_s, own_s, digits, nearest);
-    return fmu_refuse(instance,
-                      "the communication step of %.15g s cannot be taken in internal steps of %.15g s (step_s): "
-                      "set another step_s before the run",
-                      step_s, own_s);
 }
 
 static void shift_input(laconic_input *out, const fmu_model *self, double by_s) {
@@ -325,7 +270,7 @@ static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint
     if (is_kept && status != LACONIC_OK) fmu_model_restore_motion(self, &motion);
     *taken = self->plant.steps - before;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
-    return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
+    return status == LACONIC_OK ? FMU_OK : fmu_discard_with(instance, &why);
 }
 
 /* One step with held inputs: what most importers need at every communication step. */

@@ -6,10 +6,13 @@
 docs/integrators.md states the bound of each method. The exit status is 1 if a run exceeds its bound.
 """
 
+from __future__ import annotations
+
 import argparse
 import math
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -86,10 +89,10 @@ def coast(core: Core, number: int, method: str, steps: int, damped: bool) -> tup
     return "ok", worst, beside
 
 
-def campaign(core: Core, method: str, numbers: range, steps: int, damped: bool) -> bool:
+def campaign(core: Core, method: str, numbers: Sequence[int], steps: int, damped: bool) -> bool:
     """Prints how the runs of a method ended; whether all are within the bound."""
     ends: Counter[str] = Counter()
-    worst, beside, which = 0.0, 0.0, -1
+    worst, beside, which = 0.0, 0.0, None
     for number in numbers:
         try:
             end, gain, ratio = coast(core, number, method, steps, damped)

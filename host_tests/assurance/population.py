@@ -26,8 +26,7 @@ from laconic.core.plant import Plant
 from laconic.errors import Refused, ResultFails
 from laconic.scene.methods import STIFF_4
 from laconic.tools.enclosure.balls import Vector, ball, precision, times
-from laconic.tools.enclosure.equation import equation_of
-from laconic.tools.enclosure.loads import Stretch
+from laconic.tools.enclosure.equation import Stretch, equation_of
 from laconic.tools.enclosure.motion import Motion
 from laconic.tools.enclosure.state import Beginning
 from laconic.tools.report.collocation import exact_start, true_states

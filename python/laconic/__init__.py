@@ -22,6 +22,10 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.core import Rates as Rates
     from laconic.core import Vehicle as Vehicle
     from laconic.core import load as load_core
+    from laconic.core.articulated import ArticulatedMotion as ArticulatedMotion
+    from laconic.core.articulated import ArticulatedPlant as ArticulatedPlant
+    from laconic.core.articulated import ArticulatedReactions as ArticulatedReactions
+    from laconic.core.articulated import ArticulatedVehicle as ArticulatedVehicle
     from laconic.core.derivatives import StepDerivatives as StepDerivatives
     from laconic.core.derivatives import StepJacobian as StepJacobian
     from laconic.core.estimate import Errors as Errors
@@ -45,13 +49,16 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.tools.analyse.findings import Study as Study
     from laconic.tools.control.filter import Filter as Filter
 
-__all__ = ["METHODS", "BadInput", "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation", "Matrices", "Plant",
-           "Pose", "Rates", "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian",
-           "Study", "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
+__all__ = ["METHODS", "ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions", "ArticulatedVehicle", "BadInput",
+           "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation", "Matrices", "Plant", "Pose", "Rates",
+           "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study",
+           "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
            "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
-    "METHODS": "scene", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
+    "METHODS": "scene", **dict.fromkeys(("ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions",
+                                         "ArticulatedVehicle"), "core.articulated"),
+    "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
     "Errors": "core.estimate", "Estimate": "core.estimate", "Filter": "tools.control.filter", "Matrices": "core",
     "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",

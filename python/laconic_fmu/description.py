@@ -71,9 +71,14 @@ class Description:
         return next(v for v in self.variables if v.name == name)
 
     @property
+    def array_parameters(self) -> tuple[Variable, ...]:
+        """The structural parameters that set the sizes of arrays."""
+        return tuple(v for v in self.variables if v.causality == "structuralParameter")
+
+    @property
     def array_parameter(self) -> Variable | None:
-        """The structural parameter that sets the size of the arrays."""
-        return next((v for v in self.variables if v.causality == "structuralParameter"), None)
+        """The first of them."""
+        return next(iter(self.array_parameters), None)
 
     @property
     def array_size(self) -> int:
@@ -88,7 +93,7 @@ class Description:
 
     def elements(self, variable: Variable) -> int | None:
         """How many elements the variable has in this description; None for a scalar."""
-        return self.array_size if isinstance(variable.size, str) else variable.size
+        return int(self.variable(variable.size).start[0]) if isinstance(variable.size, str) else variable.size
 
 
 def _variable(element: ET.Element, names: Mapping[int, str]) -> Variable:
@@ -137,14 +142,14 @@ def with_values(description: Description, values: Mapping[str, Sequence[float]],
     unknown = set(values) - {v.name for v in description.variables}
     if unknown:
         raise ValueError(f"no such variables: {', '.join(sorted(unknown))}")
-    size = int(values["wheel_count"][0]) if "wheel_count" in values else description.array_size
+    sizes = {v.name: int(values[v.name][0] if v.name in values else v.start[0]) for v in description.array_parameters}
     variables = []
     for variable in description.variables:
         start = variable.start
         if variable.name in values:
             start = tuple(number(value, variable.tag) for value in values[variable.name])
         elif isinstance(variable.size, str) and start:
-            start = (start[0],) * size
+            start = (start[0],) * sizes[variable.size]
         variables.append(replace(variable, start=start))
     root = ET.fromstring(ET.tostring(description.root))
     root.set("modelName", model_name)

@@ -13,7 +13,7 @@ PAGE = "documentation/index.html"
 VEHICLE_MARK = "<!-- the vehicle of a scene -->"
 """The comment in the template that the vehicle's part replaces."""
 SUPPORTS = ("support_x_m", "support_y_m")
-WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
+WHEEL_COLUMNS = ("wheel_kind", "wheel_body", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
 OWN_COLUMNS = ("wheel_undriven", "own_radius_m", "own_inertia_kgm2", "own_motor_gain_Nm_per_V",
                "own_motor_damping_Nms", "motor_circuit", "own_friction_coefficient", "own_roller_drag",
                "own_axle_friction_Nm", "start_wheel_speed_rad_per_s", "encoder_counts_per_turn", "encoder_gear_ratio")
@@ -27,7 +27,7 @@ COMMON = {"own_radius_m": "wheel_radius_m", "own_inertia_kgm2": "wheel_inertia_k
 
 def vehicle_parts(parts: Mapping[str, bytes], description: Description, version: int) -> dict[str, bytes]:
     """Icon and page of a vehicle's FMU, by their names in the archive. `parts`: the generic FMU's."""
-    values = {v.name: [as_double(text) for text in v.start] for v in description.variables}
+    values = _in_one_frame({v.name: [as_double(text) for text in v.start] for v in description.variables})
     name = description.root.get("modelName", "")
     drawing = icon_svg(values, name)
     page = _page(parts[PAGE].decode("utf-8"), description, drawing).encode("utf-8")
@@ -35,6 +35,20 @@ def vehicle_parts(parts: Mapping[str, bytes], description: Description, version:
         return {PAGE: page, "model.png": icon_png(values)}
     return {PAGE: page, "terminalsAndIcons/icon.png": icon_png(values),
             "terminalsAndIcons/icon.svg": drawing.encode("utf-8")}
+
+
+def _in_one_frame(values: dict[str, list[float]]) -> dict[str, list[float]]:
+    """Wheels on bodies with hinges in the frame of the carriage, with all hinges at the angle 0."""
+    hinges = list(zip(values.get("body_parent", ()), values.get("body_hinge_x_m", ()), values.get("body_hinge_y_m", ()),
+                      strict=True))
+    places = [(0.0, 0.0)]
+    for parent, x, y in hinges:
+        places.append((places[int(parent)][0] + x, places[int(parent)][1] + y))
+    bodies = [int(body) for body in values.get("wheel_body", ())]
+    moved = {f"wheel_{axis}_m": [value + places[body][k] for value, body in
+                                 zip(values[f"wheel_{axis}_m"], bodies, strict=True)]
+             for k, axis in enumerate("xy") if bodies}
+    return values | moved
 
 
 def _page(template: str, description: Description, drawing: str) -> str:

@@ -34,19 +34,27 @@ def _range(description: Description, variable: Variable) -> str:
     return f"{variable.attributes.get('min', least)}, {variable.attributes.get('max', most)}"
 
 
+def _size(description: Description, variable: Variable) -> int | str:
+    """As fmu_variable.size has it."""
+    if variable.size is None or isinstance(variable.size, int):
+        return variable.size or 1
+    first = description.array_parameter
+    return 0 if first is not None and variable.size == first.name else "FMU_OTHER_SIZE"
+
+
 def _row(description: Description, variable: Variable, name_at: int, states: Mapping[str, str]) -> str:
     symbol = re.sub(r"\W+", "_", variable.name).strip("_")
-    size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
+    size = _size(description, variable)
     return (f"    ROW({symbol}, {name_at}, {size}, {TYPES[variable.tag]}, {_access(variable, states)}, "
             f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}),")
 
 
 def _fits(description: Description) -> list[str]:
     """C that does not compile if the description declares longer arrays than the model has."""
-    parameter = description.array_parameter
-    if parameter is None:
-        return []
-    return [f"typedef char fmu_arrays_fit[{parameter.attributes['max']} <= FMU_MODEL_LARGEST_ARRAY ? 1 : -1];", ""]
+    largest = ("FMU_MODEL_LARGEST_ARRAY", "FMU_MODEL_OTHER_LARGEST_ARRAY")
+    fits = [f"typedef char fmu_{parameter.name}_fits[{parameter.attributes['max']} <= {most} ? 1 : -1];"
+            for parameter, most in zip(description.array_parameters, largest, strict=False)]
+    return [*fits, ""] if fits else []
 
 
 def tables(description: Description, text_3: str, text_2: str) -> str:

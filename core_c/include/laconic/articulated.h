@@ -76,7 +76,7 @@ typedef struct laconic_articulated_vehicle {
 } laconic_articulated_vehicle;
 
 /* Rows as in vehicle.h: X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED). laconic_field_name() and
- * laconic_field_path() know them; no FMU and no node has them yet. */
+ * laconic_field_path() know them; the node does not have them yet. */
 /* clang-format off */
 #define LACONIC_BODY_FIELDS(X, of) \
     X(of,  97, BODY_PARENT,      parent,           body_parent,           INTEGER, UNCHECKED,    NEVER) \
@@ -100,14 +100,15 @@ typedef struct laconic_articulated_vehicle {
 #define LACONIC_HINGE_INPUT_FIELDS(X, of) \
     X(of, 111, HINGE_VOLTAGE,      hinge_voltage_V,               hinge_voltage_V,      REAL, FINITE, NEVER) \
     X(of, 112, HINGE_TORQUE,       hinge_torque_Nm,               hinge_torque_Nm,      REAL, FINITE, NEVER) \
-    X(of, 113, HINGE_RATE,         hinge_rate_rad_per_s,          hinge_rate_rad_per_s, REAL, FINITE, NEVER) \
-    X(of, 114, HINGE_ACCELERATION, hinge_acceleration_rad_per_s2, hinge_acceleration_rad_per_s2, REAL, FINITE, NEVER) \
-    X(of, 115, TWIST,              twist,                         twist,                REAL, FINITE, NEVER) \
-    X(of, 116, TWIST_RATE,         twist_rate,                    twist_rate,           REAL, FINITE, NEVER)
+    X(of, 113, HINGE_RATE,         hinge_rate_rad_per_s, steering_rate_rad_per_s, REAL, FINITE, NEVER) \
+    X(of, 114, HINGE_ACCELERATION, hinge_acceleration_rad_per_s2, steering_acceleration_rad_per_s2, REAL, FINITE, \
+      NEVER) \
+    X(of, 115, TWIST,              twist,                         steering_twist,       REAL, FINITE, NEVER) \
+    X(of, 116, TWIST_RATE,         twist_rate,                    steering_twist_rate,  REAL, FINITE, NEVER)
 #define LACONIC_HINGE_START_FIELDS(X, of) \
     X(of, 117, START_VELOCITY,     velocity_m_per_s,     start_velocity_m_per_s,     REAL, FINITE, NEVER) \
     X(of, 118, START_YAW_RATE,     yaw_rate_rad_per_s,   start_yaw_rate_rad_per_s,   REAL, FINITE, NEVER) \
-    X(of, 119, START_HINGE_ANGLE,  hinge_angle_rad,      start_hinge_angle_rad,      REAL, FINITE, NEVER) \
+    X(of, 119, START_HINGE_ANGLE,  hinge_angle_rad,      start_hinge_rad,            REAL, FINITE, NEVER) \
     X(of, 120, START_HINGE_RATE,   hinge_rate_rad_per_s, start_hinge_rate_rad_per_s, REAL, FINITE, NEVER)
 
 #define LACONIC_ARTICULATED_FIELDS(X) \

@@ -14,9 +14,9 @@ typedef LACONIC_LANES_OF(laconic_number) laconic_real;
 typedef LACONIC_LANES_OF(laconic_angle_number) laconic_binary_angle;
 typedef LACONIC_LANES_OF(int64_t) laconic_turns;
 #ifdef LACONIC_SINGLE
-typedef LACONIC_LANES_OF(int32_t) verdict; /* in each lane −1 or 0 */
+typedef LACONIC_LANES_OF(int32_t) mask; /* in each lane −1 or 0 */
 #else
-typedef LACONIC_LANES_OF(int64_t) verdict;
+typedef LACONIC_LANES_OF(int64_t) mask;
 #endif
 
 static inline laconic_real lanes_of(laconic_number x) { return x - (laconic_real){0}; }
@@ -24,28 +24,28 @@ static inline laconic_real lanes_of(laconic_number x) { return x - (laconic_real
 #define R(x) lanes_of((laconic_number)(x))
 #define ZERO {0}
 #define NOT(a) (~(a))
-#define BOTH(a, b) ((a) & (b))
+#define AND(a, b) ((a) & (b))
 #define ALL(a) (!lanes_any(~(a)))
 #define ANY(a) lanes_any(a)
-#define WHERE(which, a, b) \
+#define SELECT(which, a, b) \
     __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(a), laconic_real), lanes_chosen, lanes_where)(which, \
                                                                                                                 a, b)
-#define KNOWN(value, which) (which)
-#define OR_ELSE(before, now) ((before) | (now))
-#define RARELY(condition, number) lanes_leave((condition), (number))
-#define USUALLY(condition, number) (!lanes_leave(~(condition), (number)))
-#define KEEP_LEFT(number, by) ((void)lanes_leave(NOT((by) == (by)), (number)))
+#define MASK_OF(value, which) (which)
+#define OR(before, now) ((before) | (now))
+#define UNLIKELY(condition, number) lanes_leave((condition), (number))
+#define LIKELY(condition, number) (!lanes_leave(~(condition), (number)))
+#define KEEP_NAN(number, by) ((void)lanes_leave(NOT((by) == (by)), (number)))
 #define ALONE false
 #define END_STEP(state, delta, path, moved) (lanes_put_off(state, delta, path, moved), LACONIC_OK)
 
 /* In pieces of one register, of which the last is tested. */
-static inline bool lanes_any(verdict which) {
+static inline bool lanes_any(mask which) {
 #ifdef LANES_WITH_AVX
     typedef long long piece __attribute__((vector_size(32)));
 #else
     typedef uint64_t piece;
 #endif
-    piece part[sizeof(verdict) / sizeof(piece)];
+    piece part[sizeof(mask) / sizeof(piece)];
     __builtin_memcpy(part, &which, sizeof part);
     for (unsigned i = 1; i < sizeof part / sizeof part[0]; i++) part[0] |= part[i];
 #ifdef LANES_WITH_AVX
@@ -56,15 +56,15 @@ static inline bool lanes_any(verdict which) {
 }
 
 /* Always false: the lanes that would answer yes become NaN. */
-static inline bool lanes_leave(verdict which, laconic_real *number) {
-    *number = (laconic_real)((verdict)*number | which);
+static inline bool lanes_leave(mask which, laconic_real *number) {
+    *number = (laconic_real)((mask)*number | which);
     return false;
 }
 
-static inline laconic_real lanes_chosen(verdict which, laconic_real a, laconic_real b) {
-    return (laconic_real)((which & (verdict)a) | (~which & (verdict)b));
+static inline laconic_real lanes_chosen(mask which, laconic_real a, laconic_real b) {
+    return (laconic_real)((which & (mask)a) | (~which & (mask)b));
 }
 
-static inline laconic_real magnitude(laconic_real x) { return (laconic_real)((verdict)x & ~(verdict)R(-0.0)); }
+static inline laconic_real magnitude(laconic_real x) { return (laconic_real)((mask)x & ~(mask)R(-0.0)); }
 
 #endif

@@ -23,27 +23,27 @@ typedef int64_t signed_angle;
 /* Below a turn: a lane that yaws further in one step leaves the usual way. */
 #define LARGEST_YAW_CHANGE_RAD R(6)
 
-static inline vector lanes_where(verdict which, vector a, vector b) {
+static inline vector lanes_where(mask which, vector a, vector b) {
     return vector_of(lanes_chosen(which, a.x, b.x), lanes_chosen(which, a.y, b.y), lanes_chosen(which, a.z, b.z));
 }
 
 /* ------------------------------------------------- numbers as integers, and back -- */
 
 typedef struct lanes_integer { /* a number cut to its whole part: as an integer, and as a number, 0 without a sign */
-    verdict integer;
+    mask integer;
     real whole;
 } lanes_integer;
 
 #if defined(LACONIC_SINGLE) || defined(LANES_WITH_CONVERSIONS)
 
-static inline real lanes_number(verdict integer) { return __builtin_convertvector(integer, real); }
+static inline real lanes_number(mask integer) { return __builtin_convertvector(integer, real); }
 
 /* |x| < half the range of the integers; other numbers, and NaN, of lanes that are refused count as 0, since C does not
  * define their conversion. */
 static inline lanes_integer lanes_cut(real x) {
-    const verdict fits = magnitude(x) < HALF_TURN;
+    const mask fits = magnitude(x) < HALF_TURN;
     lanes_integer cut;
-    cut.integer = __builtin_convertvector((real)((verdict)x & fits), verdict);
+    cut.integer = __builtin_convertvector((real)((mask)x & fits), mask);
     cut.whole = lanes_number(cut.integer);
     return cut;
 }
@@ -64,7 +64,7 @@ static inline lanes_integer lanes_cut(real x) {
     const laconic_binary_angle magic =
         ((laconic_binary_angle)MAGIC_MULTIPLE << 16) + (laconic_binary_angle)MAGIC_INTEGER;
     const laconic_binary_angle sum = ((laconic_binary_angle)high << 16) + (laconic_binary_angle)low; /* may wrap */
-    const lanes_integer out = {(verdict)(sum - magic), whole};
+    const lanes_integer out = {(mask)(sum - magic), whole};
     return out;
 }
 
@@ -73,16 +73,14 @@ static inline lanes_integer lanes_cut(real x) {
 /* |x| < 2⁶³: of |x| the part above 2³² rounded, what is left (which may be below 0) cut down. */
 static inline lanes_integer lanes_cut(real x) {
     const real size = magnitude(x);
-    const verdict sign = x < R(0);
+    const mask sign = x < R(0);
     const real high = size * R(2.3283064365386962890625e-10) + MAGIC_INTEGER;
     const real left = size - (high - MAGIC_INTEGER) * R(4294967296.0);
     const real low = left + MAGIC_INTEGER;
-    const verdict above = low - MAGIC_INTEGER > left;
-    const verdict cut =
-        (((verdict)high - (verdict)MAGIC_INTEGER) << 32) + ((verdict)low - (verdict)MAGIC_INTEGER) + above;
-    const real whole =
-        (high - MAGIC_INTEGER) * R(4294967296.0) + ((low - MAGIC_INTEGER) - (real)(above & (verdict)R(1)));
-    const lanes_integer out = {(cut ^ sign) - sign, (real)((verdict)whole ^ ((verdict)R(-0.0) & sign))};
+    const mask above = low - MAGIC_INTEGER > left;
+    const mask cut = (((mask)high - (mask)MAGIC_INTEGER) << 32) + ((mask)low - (mask)MAGIC_INTEGER) + above;
+    const real whole = (high - MAGIC_INTEGER) * R(4294967296.0) + ((low - MAGIC_INTEGER) - (real)(above & (mask)R(1)));
+    const lanes_integer out = {(cut ^ sign) - sign, (real)((mask)whole ^ ((mask)R(-0.0) & sign))};
     return out;
 }
 
@@ -91,29 +89,29 @@ static inline lanes_integer lanes_cut(real x) {
 
 /* ------------------------------------------------------------------- binary angles -- */
 
-#define HIGHEST_BIT ((verdict)R(-0.0))
+#define HIGHEST_BIT ((mask)R(-0.0))
 
 /* a where the highest bit of `which` is set, else b. */
-static inline real lanes_chosen_by_bit(verdict which, real a, real b) {
+static inline real lanes_chosen_by_bit(mask which, real a, real b) {
 #if defined(LANES_WITH_AVX) && !defined(LANES_WITH_CONVERSIONS) && !defined(LACONIC_SINGLE)
     return __builtin_ia32_blendvpd256(b, a, (real)which);
 #elif defined(LANES_WITH_AVX) && !defined(LANES_WITH_CONVERSIONS)
     return __builtin_ia32_blendvps256(b, a, (real)which);
 #else
-    return lanes_chosen((verdict)(which < 0), a, b);
+    return lanes_chosen((mask)(which < 0), a, b);
 #endif
 }
 
 /* Of an angle an eighth of a turn further on the first two bits count quarters; the others are the way from the nearest
  * quarter, and an eighth of a turn more. That way as a number: */
 static inline real lanes_near(laconic_binary_angle eighth_on) {
-    const verdict left = (verdict)(eighth_on << 2 >> 2);
+    const mask left = (mask)(eighth_on << 2 >> 2);
 #if defined(LACONIC_SINGLE) || defined(LANES_WITH_CONVERSIONS)
-    return lanes_number(left - ((verdict){0} + ((signed_angle)1 << (BINARY_ANGLE_BITS - 3))));
+    return lanes_number(left - ((mask){0} + ((signed_angle)1 << (BINARY_ANGLE_BITS - 3))));
 #else
     /* Both halves as numbers, 2⁵² and 2⁸⁴ more; the upper one is exact, so that their sum is rounded once. */
-    const verdict low = (left & 0xffffffff) | (verdict)R(4503599627370496.0);
-    const verdict high = (verdict)((laconic_binary_angle)left >> 32) | (verdict)R(19342813113834066795298816.0);
+    const mask low = (left & 0xffffffff) | (mask)R(4503599627370496.0);
+    const mask high = (mask)((laconic_binary_angle)left >> 32) | (mask)R(19342813113834066795298816.0);
     return ((real)high - R(19342813113834066795298816.0 + 2310346608841064448.0)) + (real)low;
 #endif
 }
@@ -122,16 +120,16 @@ static inline direction direction_of_binary_angle(laconic_binary_angle angle) {
     const laconic_binary_angle eighth_on = angle + ((laconic_angle_number)1 << (BINARY_ANGLE_BITS - 3));
     const real x = lanes_near(eighth_on) * BINARY_ANGLE_UNIT_RAD;
     const real z = x * x, cosine = poly_cos(z), sine = poly_sin(x, z);
-    const verdict odd = (verdict)(eighth_on << 1), sign = (verdict)eighth_on & HIGHEST_BIT;
-    const real minus_sine = (real)((verdict)sine ^ HIGHEST_BIT);
-    const direction d = {(real)((verdict)lanes_chosen_by_bit(odd, minus_sine, cosine) ^ sign),
-                         (real)((verdict)lanes_chosen_by_bit(odd, cosine, sine) ^ sign)};
+    const mask odd = (mask)(eighth_on << 1), sign = (mask)eighth_on & HIGHEST_BIT;
+    const real minus_sine = (real)((mask)sine ^ HIGHEST_BIT);
+    const direction d = {(real)((mask)lanes_chosen_by_bit(odd, minus_sine, cosine) ^ sign),
+                         (real)((mask)lanes_chosen_by_bit(odd, cosine, sine) ^ sign)};
     return d;
 }
 
 static inline laconic_binary_angle lanes_binary_angle_of(real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358);
-    const verdict known = magnitude(turns) < HALF_TURN;
+    const mask known = magnitude(turns) < HALF_TURN;
     const real part = turns - lanes_cut(turns).whole;
     return (laconic_binary_angle)(known & (lanes_cut(part * HALF_TURN).integer << 1));
 }
@@ -147,7 +145,7 @@ INLINE laconic_binary_angle heading_advance(laconic_heading *heading, real angle
     heading->rest = wanted - half.whole;
     heading->fraction = old + 2U * units;
     heading->turns +=
-        __builtin_convertvector((verdict)(half.integer < 0) - (verdict)(heading->fraction < old), laconic_turns);
+        __builtin_convertvector((mask)(half.integer < 0) - (mask)(heading->fraction < old), laconic_turns);
     return old + units;
 }
 

@@ -138,13 +138,13 @@ static inline void write_state(const laconic_batch_block *block, const laconic_s
     __builtin_memcpy(state_at(block, STATE_TURNS), &s->heading.turns, sizeof s->heading.turns);
 }
 
-static inline void put_sum_where(laconic_sum *sum, verdict which, const laconic_sum *now) {
+static inline void put_sum_where(laconic_sum *sum, mask which, const laconic_sum *now) {
     sum->value = lanes_chosen(which, now->value, sum->value);
     sum->rest = lanes_chosen(which, now->rest, sum->rest);
 }
 
 /* A state becomes another in the lanes of `which`. */
-RARE void put_where(laconic_state *state, verdict which, const laconic_state *now) {
+RARE void put_where(laconic_state *state, mask which, const laconic_state *now) {
     const laconic_turns turns = __builtin_convertvector(which, laconic_turns);
     laconic_heading *heading = &state->heading;
     for (int k = 0; k < 3; k++) put_sum_where(&state->zeta[k], which, &now->zeta[k]);
@@ -224,23 +224,23 @@ typedef laconic_status (*lanes_stepper)(const laconic_model *, const laconic_int
 typedef struct lanes_run {
     laconic_batch_block *block;
     laconic_forcing forcing;
-    verdict rotates, refused; /* refused: a step of these would be                                     */
-    bool some_rotate;         /* their b rotates with the heading: a stepper of its own is for them    */
-    uint64_t after;           /* steps that come after the one that has begun                          */
-    vector delta, path;       /* what that adds                                                        */
+    mask rotates, refused; /* refused: a step of these would be                                     */
+    bool some_rotate;      /* their b rotates with the heading: a stepper of its own is for them    */
+    uint64_t after;        /* steps that come after the one that has begun                          */
+    vector delta, path;    /* what that adds                                                        */
     pose_change moved;
 } lanes_run;
 
 /* A step of a lane adds less than a turn; one near the end of the count goes alone, and laconic_step() counts. */
-static inline verdict far_from_last_turn(laconic_turns turns) {
+static inline mask far_from_last_turn(laconic_turns turns) {
     typedef LACONIC_LANES_OF(uint64_t) count;
     const count last = (count){0} + ((uint64_t)1 << 62);
-    return __builtin_convertvector((count)turns + ((uint64_t)1 << 61) < last, verdict);
+    return __builtin_convertvector((count)turns + ((uint64_t)1 << 61) < last, mask);
 }
 
 INLINE void begin_run(lanes_run *run, laconic_batch_block *block) {
     const laconic_model *model = (const laconic_model *)block->model;
-    const verdict none_of_them = {0};
+    const mask none_of_them = {0};
     laconic_input input;
     laconic_turns turns;
     run->block = block;
@@ -258,20 +258,20 @@ INLINE void begin_run(lanes_run *run, laconic_batch_block *block) {
     run->refused |= NOT(far_from_last_turn(turns));
 }
 
-static uint32_t bits_of(verdict which) {
+static uint32_t bits_of(mask which) {
     uint32_t bits = 0;
     for (int lane = 0; lane < LACONIC_LANES; lane++) bits |= (which[lane] ? 1U : 0U) << lane;
     return bits;
 }
 
-static verdict lanes_of_bits(uint32_t bits) {
-    verdict which = {0};
+static mask lanes_of_bits(uint32_t bits) {
+    mask which = {0};
     for (int lane = 0; lane < LACONIC_LANES; lane++) which[lane] = bits >> lane & 1U ? -1 : 0;
     return which;
 }
 
 /* The end of a step that some lanes could not take, or that some have stopped before. */
-RARE void end_apart(laconic_batch_block *block, const laconic_state *now, verdict out, const lanes_alone *alone,
+RARE void end_apart(laconic_batch_block *block, const laconic_state *now, mask out, const lanes_alone *alone,
                     uint64_t after) {
     const uint32_t apart = bits_of(out) & ~block->stopped & (uint32_t)((UINT64_C(1) << block->count) - 1);
     laconic_state state;
@@ -330,7 +330,7 @@ INLINE void end_step(lanes_run *run, const lanes_alone *alone) {
     laconic_state state;
     read_state(&state, run->block);
     accept_step(&state, run->delta, run->path, run->moved);
-    const verdict out = run->refused | NOT(state.x_m.value == state.x_m.value);
+    const mask out = run->refused | NOT(state.x_m.value == state.x_m.value);
     if (ANY(out) || run->block->stopped != 0) {
         const laconic_state now = state;
         end_apart(run->block, &now, out, alone, run->after);

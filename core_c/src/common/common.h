@@ -28,26 +28,25 @@
 
 typedef laconic_real real;
 
-/* The text of the methods stands for one vehicle, and in core_c/optional/batch for many side by side, one in each lane.
- * What it does by conditions it therefore says by these words. Here each is the plain operation, and costs what that
- * costs. */
+/* The methods are compiled for one vehicle, and in core_c/optional/batch for many, one in each lane of a register. They
+ * therefore write conditions with these names, as SIMD libraries do. For one vehicle each is the plain operation. */
 #ifndef LACONIC_LANES
-typedef bool verdict;    /* the result of a comparison                                    */
+typedef bool mask;       /* the result of a comparison                                    */
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler       */
 #define ZERO R(0)        /* of a table                                                    */
 #define NOT(a) (!(a))
-#define BOTH(a, b) ((a) && (b))
-#define ALL(a) (a)                  /* in every lane                                                 */
-#define ANY(a) (a)                  /* in some lane                                                  */
-#define WHERE(which, a, b) (a)      /* a where it holds, else b; tested before by ANY(which)         */
-#define KNOWN(value, which) (value) /* what ALL(which) was found to be                               */
-#define OR_ELSE(before, now) (now)  /* either holds; tested before by ALL(before)                    */
-/* Steps seldom come here, and lanes never do: a lane of which that is not so has its number become NaN and takes the
- * step by itself. The number must be one on which the displacement of the step depends. */
-#define RARELY(condition, number) (condition)
-#define USUALLY(condition, number) (condition)
-/* Where of a part of a step only `by` goes on, and as an angle would lose its NaN: a lane that left stays NaN. */
-#define KEEP_LEFT(number, by) ((void)0)
+#define AND(a, b) ((a) && (b))
+#define ALL(a) (a)                    /* in every lane                                             */
+#define ANY(a) (a)                    /* in some lane                                              */
+#define SELECT(which, a, b) (a)       /* a where it holds, else b; ANY(which) was tested before    */
+#define MASK_OF(value, which) (value) /* the value that ALL(which) had                             */
+#define OR(before, now) (now)         /* either holds; ALL(before) was tested before               */
+/* Steps seldom take this branch, and lanes never do: the number of such a lane becomes NaN, and the lane takes the step
+ * alone. The displacement of the step must depend on the number. */
+#define UNLIKELY(condition, number) (condition)
+#define LIKELY(condition, number) (condition)
+/* Keeps the NaN of a lane where only `by` continues and an angle would lose it. */
+#define KEEP_NAN(number, by) ((void)0)
 #define ALONE true           /* one vehicle: rounds may differ in number from those of another */
 #define END_STEP accept_step /* the last part of a step; lanes put it off until others have begun theirs */
 #endif
@@ -99,7 +98,7 @@ static inline real magnitude(real x) {
 static inline real cut(real x, real limit) { return x > limit ? limit : (x < -limit ? -limit : x); }
 #endif
 
-static inline verdict is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
+static inline mask is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
 /* Beyond it neighbouring angles differ by more than the smallest angle that counts, so the direction is not known. */
 #define LARGEST_ANGLE (LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON)

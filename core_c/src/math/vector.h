@@ -66,6 +66,6 @@ static inline real rows_size(const real rows[][3], int32_t count) {
 }
 
 /* Products of two such numbers, of one model or of two, stay in the range. False for NaN. */
-static inline verdict fits_squared(real sum_of_sizes) { return is_finite(sum_of_sizes * sum_of_sizes); }
+static inline mask fits_squared(real sum_of_sizes) { return is_finite(sum_of_sizes * sum_of_sizes); }
 
 #endif

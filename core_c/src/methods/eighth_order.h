@@ -9,7 +9,7 @@
 static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], real angle[NODES]) {
     real sum = R(0);
     for (int k = 0; k < NODES; k++) sum += magnitude(angle[k]);
-    if (USUALLY(sum <= R(0.78), &angle[0])) { /* then each is below π/4 = 0.785, up to where the polynomials hold */
+    if (LIKELY(sum <= R(0.78), &angle[0])) { /* then each is below π/4 = 0.785, up to where the polynomials hold */
         for (int k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
         for (int k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
     } else {

@@ -52,7 +52,7 @@ INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vecto
     const real across = half_step * dot(vec(m->spin_gain), zeta);
     const real curve = half_step * dot(vec(m->spin_curve), zeta);
     real z = along * curve - across * across;
-    if (USUALLY(magnitude(z) <= TANGENT_SMALL, &z)) {
+    if (LIKELY(magnitude(z) <= TANGENT_SMALL, &z)) {
         const real tangent = poly_tangent(z);
         const half_angle a = {along * tangent, R(1) - across * tangent};
         return a;
@@ -70,7 +70,7 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
         scaled(factor, plus(scaled(a.denominator, zeta_cross_w), scaled(a.numerator, cross(zeta_cross_w, w))));
     /* tan²(ψ/2) is 1/16 at ψ = 0.49: up to there |δ| is at most half of |ζ|, and rounding δ costs less than rounding
      * ζ⁺. */
-    return RARELY(aside > R(0.0625) * ahead, &delta.x) ? length_kept(zeta.x, zeta.y, zeta.z, delta) : delta;
+    return UNLIKELY(aside > R(0.0625) * ahead, &delta.x) ? length_kept(zeta.x, zeta.y, zeta.z, delta) : delta;
 }
 
 /* The exact increment under damping and forcing, without the gyroscopic term. */

@@ -31,7 +31,7 @@ typedef struct panel {
 typedef struct progress {
     vector delta, mean; /* ∫ζ ds */
     pose_change moved;
-    verdict settled; /* the rounds of every panel so far */
+    mask settled; /* the rounds of every panel so far */
 } progress;
 
 static vector parabola_at(const vector term[3], real s) {
@@ -127,8 +127,8 @@ INLINE real moved_by_answer(node_vectors *zeta, vector start, const panel *p, co
 }
 
 /* Takes the rounds after the first ROUNDS, for one vehicle. Returns whether they found the solution. */
-RARE verdict take_more_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
-                              vector start, real yaw_before, real last_move) {
+RARE mask take_more_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p, vector start,
+                           real yaw_before, real last_move) {
     const vector still = minus(p->constant, damping(m, start));
     real move = last_move;
     if (!ALONE) return nodes_settled(zeta, move, SETTLED);
@@ -142,25 +142,24 @@ RARE verdict take_more_rounds(node_vectors *zeta, node_vectors *rate, const laco
 }
 
 /* Finds ζ and F at the nodes, by rounds from F at the start on. Returns whether they are the solution. */
-INLINE verdict take_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
-                           vector start) {
+INLINE mask take_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p, vector start) {
     const vector still = minus(p->constant, damping(m, start));
     real move = R(0);
     first_answer(zeta, start, p->weight, first_rate(m, start, still));
     for (int round = 1; round < ROUNDS; round++) {
         rates_at(rate, m, zeta, still);
         move = moved_by_answer(zeta, start, p, rate);
-        if (ALL(move == R(0))) return KNOWN(true, move == R(0));
+        if (ALL(move == R(0))) return MASK_OF(true, move == R(0));
     }
     node_vectors at = *zeta, f = *rate; /* only copies are in memory */
-    const verdict settled = take_more_rounds(&at, &f, m, p, start, R(0), move);
+    const mask settled = take_more_rounds(&at, &f, m, p, start, R(0), move);
     *zeta = at;
     *rate = f;
     return settled;
 }
 
-RARE verdict take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
-                                 vector start, real yaw_before) {
+RARE mask take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
+                              vector start, real yaw_before) {
     const vector still = minus(none, damping(m, start));
     real move = R(0);
     for (int j = 0; j < NODES; j++) {
@@ -172,7 +171,7 @@ RARE verdict take_varying_rounds(node_vectors *zeta, node_vectors *rate, const l
         rates_at(rate, m, zeta, still);
         add_varying_forcing(rate, m, p, zeta, yaw_before);
         move = moved_by_answer(zeta, start, p, rate);
-        if (ALL(move == R(0))) return KNOWN(true, move == R(0));
+        if (ALL(move == R(0))) return MASK_OF(true, move == R(0));
     }
     return take_more_rounds(zeta, rate, m, p, start, yaw_before, move);
 }
@@ -197,13 +196,13 @@ static void take_panel(progress *found, const laconic_model *m, const panel *p, 
     const vector start = plus(step_start, found->delta);
     if (p->varying == NULL) {
         node_vectors zeta, rate;
-        const verdict settled = take_rounds(&zeta, &rate, m, p, start);
-        found->settled = BOTH(found->settled, settled);
+        const mask settled = take_rounds(&zeta, &rate, m, p, start);
+        found->settled = AND(found->settled, settled);
         finish_panel(found, m, p, start, &zeta, &rate);
     } else {
         node_vectors zeta, rate; /* others, since these are in memory */
-        const verdict settled = take_varying_rounds(&zeta, &rate, m, p, start, found->moved.yaw_change_rad);
-        found->settled = BOTH(found->settled, settled);
+        const mask settled = take_varying_rounds(&zeta, &rate, m, p, start, found->moved.yaw_change_rad);
+        found->settled = AND(found->settled, settled);
         finish_panel(found, m, p, start, &zeta, &rate);
     }
 }
@@ -231,7 +230,7 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     progress found = {none, none, {R(0), R(0), R(0)}, R(0) == R(0)};
     forcing_terms terms;
     panel p;
-    if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (UNLIKELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
     p.h = integrator->step_s;
     for (int axis = 0; axis < 3; axis++) p.weight[axis] = integrator->collocation[axis];
     p.first = R(0);
@@ -251,10 +250,10 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     else
         take_panels(&found, model, integrator, &p, zeta);
     increment by = {found.delta, found.mean, found.delta};
-    if (!USUALLY(found.settled, &found.moved.along_m)) return LACONIC_STEP_SINGULAR;
-    if (!USUALLY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &found.moved.along_m))
+    if (!LIKELY(found.settled, &found.moved.along_m)) return LACONIC_STEP_SINGULAR;
+    if (!LIKELY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &found.moved.along_m))
         return not_passive(by);
-    if (!USUALLY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
+    if (!LIKELY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
     return end_levelled(state, model, integrator->step_s, samples, by, found.moved);
 }
 
@@ -272,7 +271,7 @@ static void choose_panels(laconic_integrator *integrator, const laconic_model *m
     if (!ANY(fastest > scale * WHOLE_DECAY)) return;
     for (int axis = 0; axis < 3; axis++) {
         const real a = integrator->step_s * m->decay_per_s[axis];
-        if (ANY(BOTH(a > panel_decay, a < slowest))) slowest = a;
+        if (ANY(AND(a > panel_decay, a < slowest))) slowest = a;
     }
     do {
         if (integrator->stretches >= 2) length *= R(2);

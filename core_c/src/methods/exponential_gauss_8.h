@@ -68,8 +68,8 @@ INLINE void integrals(real to_nodes[NODES + 1], int i, const real *phi, int time
 /* Either follows from the other: without decay the integral is once + a·twice, with a = h·r. Where damping is slow the
  * second is summed, so that it costs no digits, where it is fast the first. */
 static inline void weights_of(real w[PANEL_WEIGHTS], const real *phi, real h, real a) {
-    const verdict fast = a > R(1);
-    const real inverse = R(1) / WHERE(fast, a, R(1));
+    const mask fast = a > R(1);
+    const real inverse = R(1) / SELECT(fast, a, R(1));
     for (int i = 0; i < NODES; i++) {
         real once[NODES + 1], twice[NODES + 1], summed[NODES + 1], without[NODES + 1];
         for (int j = 0; j < NODES; j++) without[j] = R(undamped[i][j]);
@@ -81,9 +81,9 @@ static inline void weights_of(real w[PANEL_WEIGHTS], const real *phi, real h, re
         if (ANY(fast)) {
             integrals(summed, i, phi, 1);
             for (int j = 0; j <= NODES; j++) {
-                once[j] = ALL(fast) ? summed[j] : WHERE(fast, summed[j], once[j]);
+                once[j] = ALL(fast) ? summed[j] : SELECT(fast, summed[j], once[j]);
                 twice[j] = ALL(fast) ? inverse * (without[j] - summed[j])
-                                     : WHERE(fast, inverse * (without[j] - summed[j]), twice[j]);
+                                     : SELECT(fast, inverse * (without[j] - summed[j]), twice[j]);
             }
         }
         for (int j = 0; j < NODES; j++) AT_POINT(w, i, j) = h * once[j];
@@ -124,7 +124,7 @@ INLINE real distance_of_nodes(const node_vectors *zeta, const node_vectors *othe
 }
 
 /* Whether a round that moved ζ at the nodes so far ended at the solution. False for NaN. */
-static inline verdict nodes_settled(const node_vectors *zeta, real move, real tolerance) {
+static inline mask nodes_settled(const node_vectors *zeta, real move, real tolerance) {
     static const node_vectors zero = ALL_ZERO;
     return move <= tolerance * distance_of_nodes(zeta, &zero);
 }

@@ -52,7 +52,7 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     const real h = integrator->step_s;
     vector zeta = zeta_of(state);
     increment by;
-    if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (UNLIKELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
     by = constant_over(samples) ? held_stages(model, h, zeta, vec(samples->start->constant))
                                 : varying_stages(model, h, zeta, &state->heading, samples);
     return advance_if_passive(state, model, h, samples, zeta, by);

@@ -9,7 +9,7 @@ vector laconic_forcing_after_yaw(const laconic_forcing *forcing, const laconic_h
     const laconic_binary_angle angle =
         (laconic_binary_angle)(heading->fraction + laconic_binary_angle_of(yaw_change_rad));
     vector b = forcing_at(forcing, laconic_direction_of_binary_angle(angle));
-    KEEP_LEFT(&b.x, yaw_change_rad); /* which as an angle is 0 where it is NaN */
+    KEEP_NAN(&b.x, yaw_change_rad); /* which as an angle is 0 where it is NaN */
     return b;
 }
 
@@ -28,8 +28,8 @@ static real work(vector start, vector middle, vector end, const increment *by) {
     return dot(mean, by->mean) + (R(1) / R(12)) * dot(change, by->slope);
 }
 
-verdict laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
-                                 const laconic_forcing_samples *samples, const increment *by) {
+mask laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
+                              const laconic_forcing_samples *samples, const increment *by) {
     const vector zeta = zeta_of(state);
     vector b[3];
     forcing_along(b, model, state, step_s, samples, by);

@@ -66,7 +66,7 @@ INLINE vector zeta_rate(const laconic_model *m, vector z, vector b) {
 }
 
 /* |g·ζ| is beyond the gyroscopic limit of an explicit method. */
-static inline verdict beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
+static inline mask beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
     return magnitude(dot(vec(m->nu_of_zeta[2]), zeta)) > integrator->gyro_limit;
 }
 
@@ -115,7 +115,7 @@ static inline void add_slope(laconic_forcing *forcing, const laconic_model *m) {
 }
 
 /* An input of 0 costs no operations. NaN counts as acting, so that the step is refused. */
-static inline verdict acts(real a, real b, real c) { return NOT(BOTH(BOTH(a == R(0), b == R(0)), c == R(0))); }
+static inline mask acts(real a, real b, real c) { return NOT(AND(AND(a == R(0), b == R(0)), c == R(0))); }
 
 /* A step does not use the point of a force of 0, but that must be finite, too. NaN or infinity where it is not. */
 static inline real world_force_point(const laconic_input *input) {
@@ -126,10 +126,10 @@ static inline void forcing_of(laconic_forcing *forcing, const laconic_model *mod
     vector b = none;
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = b_of_torques(model, input);
     if (LACONIC_WITH_BODY_WRENCH && ANY(acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm)))
-        b = WHERE(acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm),
-                  plus(b, b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1],
-                                                         input->body_moment_Nm))),
-                  b);
+        b = SELECT(acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm),
+                   plus(b, b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1],
+                                                          input->body_moment_Nm))),
+                   b);
     store(forcing->constant, b);
     forcing->rotates = LACONIC_WITH_WORLD_FORCE &&
                        (ANY(acts(input->world_force_N[0], input->world_force_N[1], R(0))) || sloped(model));
@@ -175,22 +175,22 @@ typedef struct increment {
 #define ENERGY_TOLERANCE R(0.0009765625)
 
 /* Decides as `passive`, with b as it varies over the step. */
-verdict laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
-                                 const laconic_forcing_samples *samples, const increment *by);
+mask laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
+                              const laconic_forcing_samples *samples, const increment *by);
 
 /* Does a step gain no more energy than the forcing supplies? Exactly, |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ
  * dt. Tested first with b at the start. False for NaN, and in free motion for infinity. */
-INLINE verdict passive(const laconic_model *model, const laconic_state *state, real step_s,
-                       const laconic_forcing_samples *samples, vector zeta, increment by) {
+INLINE mask passive(const laconic_model *model, const laconic_state *state, real step_s,
+                    const laconic_forcing_samples *samples, vector zeta, increment by) {
     const real before = square(zeta), after = square(plus(zeta, by.delta));
     const real excess = (R(1) - ENERGY_TOLERANCE) * after - (R(1) + ENERGY_TOLERANCE) * before;
-    const verdict calm = excess <= R(0);
-    if (ALL(calm)) return KNOWN(true, calm);
-    const verdict driven = OR_ELSE(calm, excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean));
-    if (ALL(driven)) return KNOWN(true, driven);
-    if (constant_over(samples)) return KNOWN(false, driven);
+    const mask calm = excess <= R(0);
+    if (ALL(calm)) return MASK_OF(true, calm);
+    const mask driven = OR(calm, excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean));
+    if (ALL(driven)) return MASK_OF(true, driven);
+    if (constant_over(samples)) return MASK_OF(false, driven);
     const increment copy = by; /* by itself has no address and stays in registers */
-    return OR_ELSE(driven, laconic_growth_is_forced(model, state, step_s, samples, &copy));
+    return OR(driven, laconic_growth_is_forced(model, state, step_s, samples, &copy));
 }
 
 /* Of |ζ|²: as much as roundings add in a step at most. In double 10⁵ steps of it are 4e-10. */
@@ -210,15 +210,15 @@ INLINE bool energy_kept(const laconic_model *model, const laconic_state *state, 
 
 /* Decides as `passive`, for methods whose steps must not add up to a gain over a run: what a step gains beyond rounding
  * and beyond what the forcing can supply is cut from the increment. */
-INLINE verdict keeps_energy(const laconic_model *model, const laconic_state *state, real step_s,
-                            const laconic_forcing_samples *samples, vector zeta, increment *by) {
+INLINE mask keeps_energy(const laconic_model *model, const laconic_state *state, real step_s,
+                         const laconic_forcing_samples *samples, vector zeta, increment *by) {
     const real before = square(zeta), after = square(plus(zeta, by->delta));
-    const verdict calm = after <= (R(1) + ENERGY_ROUNDING) * before;
-    if (ALL(calm)) return KNOWN(true, calm);
+    const mask calm = after <= (R(1) + ENERGY_ROUNDING) * before;
+    if (ALL(calm)) return MASK_OF(true, calm);
     const real power = dot(vec(samples->start->constant), by->mean);
-    const verdict driven = OR_ELSE(calm, after - before <= R(2) * (R(1) + ENERGY_TOLERANCE) * step_s * power);
+    const mask driven = OR(calm, after - before <= R(2) * (R(1) + ENERGY_TOLERANCE) * step_s * power);
     const bool kept = ALL(driven) || !ALONE || energy_kept(model, state, step_s, samples, by);
-    return kept ? KNOWN(true, driven) : KNOWN(false, driven);
+    return kept ? MASK_OF(true, driven) : MASK_OF(false, driven);
 }
 
 /* The status of a step that is not passive. */
@@ -236,7 +236,7 @@ typedef struct pose_change { /* over one step */
 /* sinc α and ½ j₁(α), with α half the yaw of the step. */
 INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
     real z = alpha * alpha;
-    if (USUALLY(z <= CHORD_SMALL, &z)) {
+    if (LIKELY(z <= CHORD_SMALL, &z)) {
         *sinc = poly_sinc(z);
         *half_j1 = R(0.5) * alpha * poly_j1(z);
     } else {
@@ -293,15 +293,15 @@ static inline void flush_decayed(laconic_sum *sums) {
 }
 
 /* Precondition of all that follows in a step: as model and step are bounded, it is then finite. */
-static inline verdict in_range(vector zeta, vector delta) {
+static inline mask in_range(vector zeta, vector delta) {
     return square(zeta) + square(plus(zeta, delta)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
 
 /* Takes the step, or refuses and leaves the state as it was. */
 INLINE laconic_status accept_step(laconic_state *state, vector delta, vector path, pose_change moved) {
-    if (!USUALLY(magnitude(moved.yaw_change_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) <
-                     LARGEST_YAW_CHANGE_RAD,
-                 &moved.along_m))
+    if (!LIKELY(magnitude(moved.yaw_change_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) <
+                    LARGEST_YAW_CHANGE_RAD,
+                &moved.along_m))
         return LACONIC_OVERFLOW;
     add_to_sums(state->zeta, delta);
     flush_decayed(state->zeta);
@@ -314,7 +314,7 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
                               increment by) {
     vector path = scaled(step_s, by.mean);
     pose_change moved = {R(0), R(0), R(0)};
-    if (!USUALLY(in_range(zeta, by.delta), &path.x)) return LACONIC_OVERFLOW;
+    if (!LIKELY(in_range(zeta, by.delta), &path.x)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
     return END_STEP(state, by.delta, path, moved);
 }
@@ -322,7 +322,7 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
 /* For methods whose increment may gain energy or not be finite: such a step is refused. */
 INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                          const laconic_forcing_samples *samples, vector zeta, increment by) {
-    if (!USUALLY(passive(model, state, step_s, samples, zeta, by), &by.mean.x)) return not_passive(by);
+    if (!LIKELY(passive(model, state, step_s, samples, zeta, by), &by.mean.x)) return not_passive(by);
     return advance(state, model, step_s, zeta, by);
 }
 
@@ -336,15 +336,15 @@ INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_mod
 #endif
 #define LEVELLED_FROM_RAD R(0.0625)
 
-static inline verdict acts_not(const laconic_forcing *forcing) {
+static inline mask acts_not(const laconic_forcing *forcing) {
     return NOT(acts(forcing->constant[0], forcing->constant[1], forcing->constant[2]));
 }
 
-static inline verdict unforced(const laconic_forcing_samples *samples) {
+static inline mask unforced(const laconic_forcing_samples *samples) {
     const laconic_forcing *middle = samples->middle, *end = samples->end;
     if (constant_over(samples)) return acts_not(samples->start);
     if (samples->start->rotates || middle->rotates || end->rotates) return NOT(R(0) == R(0));
-    return BOTH(acts_not(samples->start), BOTH(acts_not(middle), acts_not(end)));
+    return AND(acts_not(samples->start), AND(acts_not(middle), acts_not(end)));
 }
 
 /* Takes the step as accept_step does and levels its energy if no forcing acts. */
@@ -356,8 +356,8 @@ INLINE laconic_status end_levelled(laconic_state *state, const laconic_model *mo
                                    const laconic_forcing_samples *samples, increment by, pose_change moved) {
     const vector path = scaled(step_s, by.mean);
     const real yaw_rad = LACONIC_WITH_POSE ? moved.yaw_change_rad : dot(vec(model->yaw_rate_of_zeta), path);
-    const verdict turns = magnitude(yaw_rad) > LEVELLED_FROM_RAD;
-    if (LEVELS_ENERGY && ANY(turns) && (ALONE || RARELY(BOTH(turns, unforced(samples)), &moved.along_m))) {
+    const mask turns = magnitude(yaw_rad) > LEVELLED_FROM_RAD;
+    if (LEVELS_ENERGY && ANY(turns) && (ALONE || UNLIKELY(AND(turns, unforced(samples)), &moved.along_m))) {
         const increment copy = by;
         const pose_change by_pose = moved;
         return laconic_accept_levelled(state, model, step_s, samples, &copy, &by_pose);
@@ -370,14 +370,14 @@ INLINE laconic_status advance_levelled(laconic_state *state, const laconic_model
                                        const laconic_forcing_samples *samples, vector zeta, increment by) {
     const vector path = scaled(step_s, by.mean);
     pose_change moved = {R(0), R(0), R(0)};
-    if (!USUALLY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
+    if (!LIKELY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
     return end_levelled(state, model, step_s, samples, by, moved);
 }
 
 INLINE laconic_status advance_with_energy(laconic_state *state, const laconic_model *model, real step_s,
                                           const laconic_forcing_samples *samples, vector zeta, increment by) {
-    if (!USUALLY(keeps_energy(model, state, step_s, samples, zeta, &by), &by.mean.x)) return not_passive(by);
+    if (!LIKELY(keeps_energy(model, state, step_s, samples, zeta, &by), &by.mean.x)) return not_passive(by);
     return advance_levelled(state, model, step_s, samples, zeta, by);
 }
 

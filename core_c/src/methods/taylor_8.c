@@ -181,14 +181,14 @@ static laconic_status taylor_8_step(const laconic_model *model, const laconic_in
     pose_change moved = {R(0), R(0), R(0)};
     increment by;
     motion_series c;
-    if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (UNLIKELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
     if (constant_over(samples))
         steady_series(&c, model, h, zeta, vec(samples->start->constant));
     else
         varying_series(&c, model, h, zeta, samples, &state->heading);
     by = sum_of_terms(&c);
-    if (!USUALLY(passive(model, state, h, samples, zeta, by), &by.mean.x)) return not_passive(by);
-    if (!USUALLY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
+    if (!LIKELY(passive(model, state, h, samples, zeta, by), &by.mean.x)) return not_passive(by);
+    if (!LIKELY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
     const vector path = scaled(h, by.mean);
     if (LACONIC_WITH_POSE) moved = quadrature(&c, model, h, dot(vec(model->yaw_rate_of_zeta), path));
     return END_STEP(state, by.delta, path, moved);

@@ -226,3 +226,39 @@ def test_gains_of_the_scene_are_used() -> None:
 
 def test_scenes_without_a_base_table_have_none() -> None:
     assert laconic.read_scene("robotino2").base is None
+
+
+def test_a_locked_wheel_does_not_count_in_the_odometry() -> None:
+    tables = scene_tables("optiodom_omni4").with_values({"vehicle.wheel[4].locked": True})
+    tables.entries.pop("input", None)
+    base = Base(tables.scene())
+    start = base.look()[0]
+    driven(base, 2.0, 0.1, 0.1, 0.2)
+    seen, believed = base.look()[0], base.odometry[0]
+    assert base.motion.measured.tolist() == [True, True, True, False]
+    assert believed.heading_rad == pytest.approx(seen.heading_rad, abs=1e-6)
+    assert math.hypot(believed.x_m, believed.y_m) == pytest.approx(math.hypot(seen.x_m - start.x_m,
+                                                                              seen.y_m - start.y_m), abs=1e-4)
+
+
+@pytest.mark.parametrize("name", laconic.scene_names())
+def test_every_scene_drives(name: str) -> None:
+    base = Base(read_scene(name))
+    base.command(0, 0.1, 0.0, 0.2)
+    assert base.advance(200) == []
+    assert np.isfinite([*base.look()[0].velocity, base.odometry[0].x_m]).all()
+
+
+def test_a_base_in_single_precision_follows_too() -> None:
+    for robots in (1, 2):
+        base = Base(read_scene("robotino2").with_run(real="single"), robots)
+        driven(base, 2.0, 0.2, 0.1, 0.3)
+        assert base.look()[0].velocity == pytest.approx((0.2, 0.1, 0.3), abs=1e-3)
+
+
+def test_a_base_whose_origin_is_not_its_centre_of_mass_turns_about_the_origin() -> None:
+    base = Base(read_scene("canopen_agv"))
+    driven(base, 4.0, 0.0, 0.0, 0.5)
+    seen, start = base.look()[0], Base(read_scene("canopen_agv")).look()[0]
+    assert (seen.x_m, seen.y_m) == pytest.approx((start.x_m, start.y_m), abs=1e-3)
+    assert seen.heading_rad > 1.5

@@ -14,6 +14,7 @@ import pytest
 import laconic
 from laconic.base.extras import extra_of
 from laconic.cli.main import run
+from laconic.ros2.session import Session
 
 LOCAL = ["--local", "--domain", "79"]
 
@@ -61,6 +62,18 @@ def test_the_environment_names_domain_and_distribution(monkeypatch: pytest.Monke
     assert "ROS_DOMAIN_ID: home is not a whole number" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("words, of_environment, services", [
+    ([], "", True), (["--rmw", "fastrtps"], "", False), ([], "rmw_fastrtps_cpp", False), ([], "rmw_other", True),
+    (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True)])
+def test_services_are_left_out_for_a_middleware_that_cannot_call_them(
+        words: list[str], of_environment: str, services: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RMW_IMPLEMENTATION", of_environment)
+    made: list[Session] = []
+    monkeypatch.setattr(Session, "run", lambda session: made.append(session))
+    assert run(["ros2", "robotino2", *LOCAL, *words]) == 0
+    assert bool(made[0].robots[0].node.services) == services
+
+
 def test_without_its_package_the_extra_is_named() -> None:
     code = ("import sys; sys.modules['cyclonedds'] = None\n"
             "from laconic.cli.main import run\n"
@@ -79,7 +92,7 @@ def test_its_help_needs_no_package() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
 def test_a_signal_ends_the_run_in_order(number: int) -> None:
     words = [sys.executable, "-m", "laconic", "ros2", "robotino2", *LOCAL, "--json"]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -10,17 +10,22 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cyclonedds._clayer import ddspy_write
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
 from cyclonedds.core import DDSException
+from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy
 
 import laconic
+import made_up_robots
+from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.ros2.maps import Map
 from laconic.ros2.messages import new, type_hash
 from laconic.ros2.session import Ros2Options, Session, write_record
-from laconic.ros2.wire import LATCHED, Participant, Quality, check_name, polled, ros_type
-from laconic.scene import read_scene
+from laconic.ros2.wire import LATCHED, USUAL, Participant, Quality, check_name, polled, ros_type
+from laconic.scene import build_scene, read_scene
+from laconic.scene.scene_tables import scene_tables
 from ros2_support import DOMAIN, WALL_NS, last, rig_of
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -78,6 +83,15 @@ def test_stamped_hears_no_plain_twist() -> None:
         assert rig.session.base.look()[0].x_m == 0.0
         assert rig.lines == ["/laconic: a publisher on cmd_vel sends geometry_msgs/msg/Twist, which is not heard; send "
                              "TwistStamped"]
+
+
+def test_unstamped_has_one_type_on_the_topic() -> None:
+    with rig_of(is_stamped=False) as rig:
+        readers = BuiltinDataReader(rig.peer.dds, BuiltinTopicDcpsSubscription).take(N=500)
+        types = {each.type_name for each in readers if getattr(each, "topic_name", "") == "rt/cmd_vel"}
+        assert types == {"geometry_msgs::msg::dds_::Twist_"}
+        rig.drive(60, 0.1)
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
 
 
 def test_who_comes_late_gets_what_is_latched(tmp_path: Path) -> None:
@@ -245,6 +259,13 @@ def test_a_machine_that_sleeps_is_told_and_not_made_up_for() -> None:
         assert rig.session.cycles == 50
         assert rig.lines == ["the machine was 30 s too late for a cycle; the robot's time stood still meanwhile"]
         assert rig.session.lateness.skipped_s == pytest.approx(30.0)
+
+
+def test_a_long_run_prints_a_line_each_minute() -> None:
+    with rig_of(rate_Hz=10.0, duration_s=130.0) as rig:
+        rig.session.run()
+        assert rig.lines == [f"{seconds} s of the robot's time: 0 commands heard, 0 cycles late"
+                             for seconds in (60, 120)]
 
 
 @pytest.mark.parametrize("jump_s", [-3600.0, 10.0])
@@ -548,3 +569,53 @@ def test_a_peer_that_does_not_keep_up_costs_messages_and_not_the_run() -> None:
         assert rig.lines[-1].startswith("/laconic: a peer does not keep up, so ")
         assert rig.session.robots[0].left_out() == 120
         assert rig.session.cycles == 130
+
+
+def test_random_bytes_end_no_run_and_drive_at_most_as_commands(tmp_path: Path) -> None:
+    rng = np.random.default_rng(39)
+    with rig_of(is_loopback=True) as rig:
+        topics = {"cmd_vel": TWIST, "/cmd_vel": "geometry_msgs/msg/TwistStamped",
+                  "initialpose": "geometry_msgs/msg/PoseWithCovarianceStamped"}
+        writers = [rig.node.publisher(topic, kind) for topic, kind in topics.items()]
+        for service, kind in (("set_parameters", "rcl_interfaces/srv/SetParameters"),
+                              ("get_parameters", "rcl_interfaces/srv/GetParameters"), ("reset", "std_srvs/srv/Empty"),
+                              ("set_pose", "robot_localization/srv/SetPose")):
+            writers.append(rig.peer._endpoint(DataWriter, f"rq/laconic/{service}Request", f"{kind}_Request", USUAL,
+                                              of_service="clientid=1;"))
+
+        def noise() -> None:
+            for writer in writers:
+                data = rng.integers(0, 256, rng.integers(0, 200), np.uint8).tobytes()
+                data = data if rng.random() < 0.5 else bytes(len(data))[:-8] + data[-8:]
+                ddspy_write(writer._ref, b"\x00\x01\x00\x00" + data + bytes(-len(data) % 4))
+
+        rig.turn(400, noise)
+        seen = rig.session.base.look()[0]
+        assert rig.session.cycles == 400 and np.isfinite([seen.x_m, seen.y_m, *seen.velocity]).all()
+        assert math.hypot(*seen.velocity[:2]) < 0.25
+        rig.call("/laconic/reset", "std_srvs/srv/Empty")
+        rig.drive(60, 0.1)
+        assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_an_imported_robot_has_the_joints_of_its_urdf(tmp_path: Path) -> None:
+    urdf, path = tmp_path / "two.urdf", tmp_path / "two.toml"
+    urdf.write_text(made_up_robots.robot(made_up_robots.TWO_WHEELS))
+    assert run(["import", str(urdf), "-o", str(path)]) == 0
+    with rig_of(read_scene(path), urdf=urdf) as rig:
+        reader = rig.node.subscription("joint_states", "sensor_msgs/msg/JointState")
+        rig.drive(100, 0.2)
+        joints = last(reader)
+        assert list(joints.name) == ["left", "right"] and rig.lines == []
+        assert min(joints.velocity) > 3.0  # the joints turn about +y, so ahead is positive
+
+
+def test_on_a_slope_the_imu_shows_gravity_along_and_across_the_ground() -> None:
+    tables = scene_tables("skid_steer").entries
+    tables["ground"]["slope_deg"] = 10.0
+    with rig_of(build_scene(tables)) as rig:
+        reader = rig.node.subscription("imu", "sensor_msgs/msg/Imu")
+        rig.turn(20)
+        felt = last(reader).linear_acceleration
+        assert (felt.x, felt.z) == pytest.approx((9.80665 * math.sin(math.radians(10.0)),
+                                                  9.80665 * math.cos(math.radians(10.0))), rel=1e-3)

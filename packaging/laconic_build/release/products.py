@@ -10,8 +10,7 @@ from laconic_build.c.embedded import TOOLS
 from laconic_build.c.facts import Facts
 from laconic_build.release import archives, readmes
 from laconic_build.release.tree import Tree
-from laconic_build.wheel.contents import FMUS
-from laconic_build.wheel.platforms import PLATFORMS
+from laconic_build.wheel.contents import FMUS, PLATFORMS
 from laconic_fmu.licences import COMPILER_TEXTS
 
 IN_EVERY_FMU = ("fmi-headers", *COMPILER_TEXTS)

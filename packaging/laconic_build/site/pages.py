@@ -7,9 +7,7 @@ import shutil
 from pathlib import Path
 
 from laconic_build.site.c_reference import c_page
-from laconic_build.site.command_reference import command_page
-from laconic_build.site.fmi_reference import fmi_page
-from laconic_build.site.python_reference import python_page
+from laconic_build.site.references import command_page, fmi_page, python_page
 from laconic_build.site.scene_reference import scene_page
 
 PICTURES = (".png", ".svg", ".gif")
@@ -18,7 +16,7 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 GROUPS = {  # the parts of the manual, in the order in which a reader needs them
     "Start": ("tutorial", "how-to"),
     "Guides": ("scenes", "import", "sensors", "fmu-importers", "fmu", "fmu-network", "rig", "rig-ports",
-               "play", "play-drives", "logs", "control", "c", "python", "sweep", "batch", "page"),
+               "play", "play-drives", "ros2", "logs", "control", "c", "python", "sweep", "batch", "page"),
     "Reference": ("reference-commands", "reference-scene", "signals", "reference-c", "reference-python",
                   "reference-fmi", "wire", "glossary"),
     "Theory": ("paper", "integrators", "friction", "accuracy"),

@@ -9,9 +9,8 @@ from pathlib import Path
 
 from laconic_build.wheel import contents
 from laconic_build.wheel.archive import make_wheel
+from laconic_build.wheel.contents import PLATFORMS, compiler_licences, licences
 from laconic_build.wheel.cross import compile_all
-from laconic_build.wheel.licences import compiler_licences, licences
-from laconic_build.wheel.platforms import PLATFORMS
 
 NATIVE = "native"
 ENDINGS = {"win32": "{}.dll", "darwin": "lib{}.dylib"}

@@ -7,11 +7,15 @@ of a build tree, laconic/_built/sources that of the project (python/laconic/base
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
+
+from laconic_fmu.licences import COMPILER_TEXTS, compiler_text, licence_of, ziglang_in
 
 BUILT = "laconic/_built"
 PACKAGES = {"laconic": "python/laconic", "laconic_fmu": "python/laconic_fmu"}
 READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
+                    "fmu/articulated/modelDescription.xml",
                     "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc",
                     "core_c/include/laconic/methods.h")
 GIVEN_OUT = ("core_c/optional/soft_double",)  # by `laconic core`
@@ -21,7 +25,8 @@ LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in 
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
 DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
 FMUS = (*(f"{name}_fmi{version}.fmu"
-          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicController") for version in (2, 3)),
+          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated", "LaconicController")
+          for version in (2, 3)),
         *(f"{name}_fmi3.fmu" for name in ("LaconicNode", "LaconicCanBus", "LaconicCanController")))
 
 
@@ -49,3 +54,52 @@ def compiled(folder: Path, library: str, programs: Iterable[str]) -> dict[str, P
     """Libraries, named as the platform does, and programs, from the folders lib and bin of `folder`."""
     names = [f"lib/{library.format(name)}" for name in LIBRARIES] + [f"bin/{name}" for name in programs]
     return {f"{BUILT}/{name}": folder / name for name in names}
+
+
+# ---- Licences of what others wrote that was compiled into what a wheel holds, by their files' names in its dist-
+# info.
+
+def licences(fmi_headers: Path, wire: Path) -> dict[str, str]:
+    """Of what is compiled with our sources."""
+    return {"LICENSE-fmi-headers.txt": licence_of(fmi_headers / "fmi3FunctionTypes.h"),
+            "LICENSE-cantools.txt": licence_of(wire / "laconic_dbc.c")}
+
+
+def compiler_licences(python: str) -> dict[str, str]:
+    """Of what the compiler adds, by the interpreter that has ziglang: all, as FMUs have binaries of every platform."""
+    zig = ziglang_in(Path(python).parents[1])
+    return {f"LICENSE-{key}.txt": compiler_text(zig, key) for key in COMPILER_TEXTS}
+
+
+# ---- The platforms that wheels are made for.
+
+@dataclass(frozen=True)
+class Platform:
+    """One of them: its tag in the wheel's name, how zig calls it, and how its files are named."""
+
+    name: str
+    tag: str
+    target: str
+    library: str = "lib{}.so"
+    has_node_process: bool = True  # its sockets are those of POSIX
+
+    @property
+    def is_linux(self) -> bool:
+        """Whether it has CAN interfaces in its kernel."""
+        return "linux" in self.target
+
+    @property
+    def is_windows(self) -> bool:
+        """Whether code is at any address without being told so."""
+        return self.library.endswith(".dll")
+
+
+MAC = "lib{}.dylib"
+PLATFORMS = {each.name: each for each in (
+    Platform("linux-x86_64", "manylinux_2_17_x86_64.manylinux2014_x86_64", "x86_64-linux-gnu.2.17"),
+    Platform("linux-aarch64", "manylinux_2_17_aarch64.manylinux2014_aarch64", "aarch64-linux-gnu.2.17"),
+    Platform("musl-x86_64", "musllinux_1_2_x86_64", "x86_64-linux-musl"),
+    Platform("musl-aarch64", "musllinux_1_2_aarch64", "aarch64-linux-musl"),
+    Platform("windows-x86_64", "win_amd64", "x86_64-windows-gnu", "{}.dll", has_node_process=False),
+    Platform("macos-x86_64", "macosx_11_0_x86_64", "x86_64-macos.11.0", MAC),
+    Platform("macos-arm64", "macosx_11_0_arm64", "aarch64-macos.11.0", MAC))}

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from laconic_build.wheel.contents import REALS
-from laconic_build.wheel.platforms import Platform
+from laconic_build.wheel.contents import REALS, Platform
 from laconic_fmu.cross import compile_to
 
 OPTIONAL = ("derivatives", "filter", "estimate", "batch")  # parts of the core that the libraries have

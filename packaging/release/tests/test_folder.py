@@ -20,8 +20,7 @@ from laconic.base.paths import build_dir
 from laconic_build.c.facts import ROOT
 from laconic_build.release import bill, checksums
 from laconic_build.release.tree import tree_of
-from laconic_build.wheel.contents import FMUS
-from laconic_build.wheel.platforms import PLATFORMS
+from laconic_build.wheel.contents import FMUS, PLATFORMS
 from laconic_fmu.licences import COMPILER_TEXTS
 
 ARCHIVES = (".zip", ".whl", ".fmu", ".pack")

@@ -23,8 +23,7 @@ from fresh_environment import PROJECT
 import laconic
 from laconic.base.paths import build_dir
 from laconic.fmu import make
-from laconic_build.wheel.contents import LIBRARIES, PROGRAMS
-from laconic_build.wheel.platforms import PLATFORMS
+from laconic_build.wheel.contents import LIBRARIES, PLATFORMS, PROGRAMS
 from laconic_fmu import archive
 from laconic_fmu.cross import compile_to
 

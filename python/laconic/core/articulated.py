@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import count, takewhile
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, items, number, one_of, shown, step_count
 from laconic.core.spelling import with_radians
 from laconic.errors import BadInput, nearest_of
+
+if TYPE_CHECKING:
+    from laconic.scene import Scene
 
 HINGES = ("free", "motor", "prescribed", "coordinated")
 """Kinds of hinges; their numbers in the core begin with 1."""
@@ -121,6 +124,15 @@ class ArticulatedVehicle(OwnMemory):
             self._set_body(at, body)
         self.model, why = core.ffi.new("laconic_articulated_model *"), core.why()
         core.check(core.lib.laconic_articulated_prepare(self.model, self.c, why), why)
+
+    @classmethod
+    def of(cls, scene: Scene) -> ArticulatedVehicle:
+        """That of a scene with hinges, in the scene's scalar type; BadInput for any other."""
+        from laconic.scene import check_scene  # which is above this room
+
+        if not check_scene(scene).has_hinges:
+            raise BadInput(f"{scene.path}: has no bodies on hinges; make a laconic.Vehicle of it")
+        return scene.articulated_vehicle(scene.core())
 
     def _set_body(self, at: int, body: Mapping[str, Any]) -> None:
         target = self.c.body[at]

@@ -129,6 +129,9 @@ class Core:
         What 0 is no value of must be there; all else that is left out is 0. Values are not checked. Wheels beyond the
         core's array are only counted, so that the check refuses them.
         """
+        if isinstance(data, Mapping) and data.get("body"):
+            raise BadInput("vehicle.body: this does not take vehicles with hinges yet; make a "
+                           "laconic.ArticulatedVehicle, or use laconic simulate")
         parts = ("wheel", "support", "motor", "payload", "ground", "drive")
         plain: dict[str, Any] = table(self, "vehicle", "vehicle", data, parts)
         for part, path in (("payload", "vehicle.payload"), ("ground", "ground"), ("drive", "vehicle.drive")):

@@ -16,6 +16,7 @@ from laconic.core import load
 from laconic.core.given import flag
 from laconic.core.sensors import settings_of, values_of
 from laconic.errors import BadInput, shown
+from laconic.fmu import hinges
 from laconic.scene import METHODS, Scene, check_scene
 from laconic_fmu.archive import Content, Variant, scene_fmu
 from laconic_fmu.page import vehicle_parts
@@ -24,9 +25,10 @@ DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 VERSIONS = (2, 3)  # of FMI
 
 
-def generic_fmu(version: int, derivatives: bool = False, estimate: bool = False) -> Path:
+def generic_fmu(version: int, derivatives: bool = False, estimate: bool = False, hinges: bool = False) -> Path:
     """The FMU that the build made."""
-    return built(f"fmu/Laconic{'Derivatives' if derivatives else 'Estimate' if estimate else ''}_fmi{version}.fmu")
+    variant = "Derivatives" if derivatives else "Estimate" if estimate else "Articulated" if hinges else ""
+    return built(f"fmu/Laconic{variant}_fmi{version}.fmu")
 
 
 def start_values(scene: Scene) -> dict[str, list[float]]:
@@ -66,6 +68,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     `version` of FMI, 2 or 3, is what the importing tool reads: there is no default, as each tool reads one or both.
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
     `estimate`: for Co-Simulation alone, with outputs of how far the run is from the true motion.
+    A scene with hinges gives another FMU, which has no such variants and no limits of hinges (`hinges.left_out`).
     """
     check_scene(scene)
     scalar, sources = flag("scalar", scalar), flag("sources", sources)
@@ -78,17 +81,28 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))
     check_file("out", path)
+    if scene.has_hinges:
+        hinges.check(scene, derivatives, estimate)
     if derivatives:
         _check_smooth(scene)
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
-    scene.sensors_of(scene.plant(load("double")))  # refuses a scene that cannot start, naming the field
-    values = start_values(scene) | ({"estimate_error": [1.0]} if estimate else {})
+    values = _values_of(scene, estimate)
     content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}", values)
+    generic = generic_fmu(version, derivatives, estimate, scene.has_hinges)
+    source = hinges.DESCRIPTION if scene.has_hinges else DESCRIPTION
     with whole_file(path) as fresh:
-        scene_fmu(generic_fmu(version, derivatives, estimate), DESCRIPTION, content, fresh,
-                  Variant(version, scalar, enumerations, sources, derivatives), vehicle_parts)
+        scene_fmu(generic, source, content, fresh, Variant(version, scalar, enumerations, sources, derivatives),
+                  vehicle_parts)
     return path
+
+
+def _values_of(scene: Scene, estimate: bool) -> dict[str, list[float]]:
+    """Start values of a scene that can start; else it is refused, naming the field."""
+    if scene.has_hinges:
+        return hinges.start_values(scene)
+    scene.sensors_of(scene.plant(load("double")))
+    return start_values(scene) | ({"estimate_error": [1.0]} if estimate else {})
 
 
 def _check_smooth(scene: Scene) -> None:

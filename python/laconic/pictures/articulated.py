@@ -10,13 +10,12 @@ from matplotlib.axes import Axes
 
 from laconic.core.articulated import CARRIAGE
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows
+from laconic.pictures.outlines import DRAWN, hull, outline_points
 
 if TYPE_CHECKING:
     from laconic.scene import Scene
     from laconic.simulation import Trajectory
 
-DRAWN = ("origin_x_m", "origin_y_m", "body_x_m", "body_y_m", "body_heading_rad")
-"""What a run keeps for its picture besides the usual signals."""
 POSES = 5           # at which the whole vehicle is drawn
 APART = 1.3         # sizes of the vehicle at least between two of them
 BODY, WHEEL, TYRE = "0.35", "black", 3.0
@@ -34,7 +33,7 @@ def plot_vehicle_path(axes: Axes, run: Trajectory) -> None:
     axes.plot(x, y, color="tab:blue", label="centre of mass of the carriage")
     for colour, (name, path) in zip(("tab:orange", "tab:green", "tab:red", "tab:purple"), trailed(run), strict=False):
         axes.plot(path.real, path.imag, "--", color=colour, lw=1.1, label=f"axle of {name}")
-    outline = _outline_points(run.scene)
+    outline = outline_points(run.scene)
     for row in poses(run):
         draw_vehicle(axes, run.scene, frames_at(run, row), outline)
     axes.plot(x[0], y[0], "o", ms=12, mfc="none", mew=2.0, color="tab:green", label="start", zorder=4)
@@ -75,7 +74,7 @@ def poses(run: Trajectory) -> list[int]:
     """Rows at which the vehicle is drawn: start, end, and between them where it does not lie over itself."""
     place = run.columns["x_m"] + 1j * run.columns["y_m"]
     way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(place)))])
-    size = 2.0 * max((abs(point) for points in _outline_points(run.scene).values() for point in points), default=0.1)
+    size = 2.0 * max((abs(point) for points in outline_points(run.scene).values() for point in points), default=0.1)
     rows = [0]
     for part in range(1, POSES):
         row = int(np.searchsorted(way, way[-1] * part / (POSES - 1)))
@@ -85,18 +84,6 @@ def poses(run: Trajectory) -> list[int]:
     if rows[-1] != len(place) - 1 and abs(place[-1] - place[0]) > 0.5 * size:
         rows = [row for row in rows if row == 0 or abs(place[row] - place[-1]) > APART * size] + [len(place) - 1]
     return rows
-
-
-def _outline_points(scene: Scene) -> dict[str, list[complex]]:
-    """What a body's outline holds, in its own frame: its hinge, the hinges on it, its wheels and supports."""
-    found: dict[str, list[complex]] = {CARRIAGE: [complex(each["x_m"], each["y_m"])
-                                                  for each in scene.vehicle["support"]]}
-    found |= {hinge.name: [0j] for hinge in scene.hinges}
-    for body in scene.vehicle["body"]:
-        found[body["parent"]].append(complex(body["hinge_x_m"], body["hinge_y_m"]))
-    for wheel in scene.vehicle["wheel"]:
-        found[wheel.get("body", CARRIAGE)].append(complex(wheel["x_m"], wheel["y_m"]))
-    return found
 
 
 def draw_vehicle(axes: Axes, scene: Scene, frames: Frames, outline: dict[str, list[complex]]) -> None:
@@ -114,22 +101,6 @@ def draw_vehicle(axes: Axes, scene: Scene, frames: Frames, outline: dict[str, li
                                       wheel["axle_rad"] + np.pi / 2)
         axes.plot([(middle - half).real, (middle + half).real], [(middle - half).imag, (middle + half).imag],
                   color=WHEEL, lw=TYRE, solid_capstyle="butt", zorder=3.2)
-
-
-def hull(points: list[complex]) -> list[complex]:
-    """Corners of the smallest convex outline."""
-    order = sorted(set(points), key=lambda p: (p.real, p.imag))
-    if len(order) < 3:
-        return order
-    halves = []
-    for way in (order, order[::-1]):
-        half: list[complex] = []
-        for point in way:
-            while len(half) > 1 and ((half[-1] - half[-2]).conjugate() * (point - half[-2])).imag <= 0.0:
-                half.pop()
-            half.append(point)
-        halves.append(half[:-1])
-    return halves[0] + halves[1]
 
 
 def plot_hinges(axes: Axes, run: Trajectory) -> None:

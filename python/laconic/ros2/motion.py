@@ -59,6 +59,9 @@ class Motion(Protocol):
     def place(self, robot: int, x_m: float, y_m: float, heading_rad: float) -> None:
         """At rest with the body frame at a pose."""
 
+    def has_refused(self, robot: int) -> bool:
+        """Whether a step of a robot was refused since it was last placed."""
+
     def grip(self, robot: int) -> str:
         """What the ground could not give since the last question, in words; empty where nothing is wrong."""
 
@@ -69,6 +72,11 @@ def motion_of(scene: Scene, robots: int) -> Motion:
     if robots > 1 and not needs_own and not Vehicle.of(scene).has_friction:
         return Lanes(scene, robots)
     return Singles(scene, robots)
+
+
+def turning(scene: Scene) -> np.ndarray:
+    """Which wheels have an encoder where the scene gives none: those that a motor turns."""
+    return np.array([bool(wheel["driven"] and not wheel["locked"]) for wheel in scene.vehicle["wheel"]])
 
 
 class Geometry:
@@ -129,8 +137,7 @@ class Singles:
         self.rows, self.steps, self._count = self.geometry.rows, 0, scene.wheel_count
         encoder = scene.sensors.encoder
         counts = (encoder or {}).get("counts_per_turn", ())
-        self.measured = np.array([bool(each) for each in counts] if encoder else
-                                 [wheel["driven"] for wheel in scene.vehicle["wheel"]])
+        self.measured = np.array([bool(each) for each in counts]) if encoder else turning(scene)
         gears = (encoder or {}).get("gear_ratio", [1.0] * self._count)
         self._per_count = np.array([2.0 * math.pi / (count * gear) if count else 0.0
                                     for count, gear in zip(counts, gears, strict=True)]) if encoder else None
@@ -215,6 +222,10 @@ class Singles:
         moved = replace(self.scene, initial=self.geometry.start(x_m, y_m, heading_rad))
         self.robots[robot] = Single(moved, self.core)
 
+    def has_refused(self, robot: int) -> bool:
+        """As Motion.has_refused."""
+        return self.robots[robot].has_refused
+
     def grip(self, robot: int) -> str:
         """As Motion.grip."""
         each = self.robots[robot]
@@ -237,7 +248,7 @@ class Lanes:
         self.geometry = Geometry(scene, self.plant)
         self.batch = Batch(Vehicle.of(scene), robots, scene.run.method, scene.run.step_s)
         self.rows, self.steps = self.geometry.rows, 0
-        self.measured = np.array([wheel["driven"] for wheel in scene.vehicle["wheel"]])
+        self.measured = turning(scene)
         self._start = self.plant.save()
         self._before: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0)] * robots
         self._told = np.zeros(robots, bool)
@@ -285,6 +296,10 @@ class Lanes:
         start = self.geometry.start(x_m, y_m, heading_rad)
         self.batch.start(robot, x_m=start.x_m, y_m=start.y_m, heading_rad=start.heading_rad)
         self._told[robot], self._before[robot] = False, (0.0, 0.0, 0.0)
+
+    def has_refused(self, robot: int) -> bool:
+        """As Motion.has_refused."""
+        return bool(self._told[robot])
 
     def grip(self, robot: int) -> str:
         """As Motion.grip: a batch does not watch the ground."""

@@ -69,24 +69,28 @@ class RobotNode:
     """One robot of a base as a node."""
 
     def __init__(self, participant: Participant, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
-                 is_sim_time: bool, is_stamped: bool, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
-                 description: str | None = None):
+                 is_sim_time: bool, is_stamped: bool | None, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
+                 description: str | None = None,
+                 has_services: bool = True):
         self.base, self.robot, self.told = base, robot, told
         self.node: Node = participant.node(NODE_NAME, namespace)
         prefix = f"{namespace.strip('/')}/" if shares_tf and namespace != "/" else ""
         self.frames = {name: frame if name == "map" else prefix + frame for name, frame in frames.items()}
         self.command, self.watchdog_s, self.heading_rad = Command(), base.table.watchdog_s, 0.0
         self.has_map, self.is_sim_time, self.rate_Hz, self.messages = has_map, is_sim_time, rate_Hz, 0
-        kinds = [TWIST_STAMPED] if is_stamped else [TWIST, TWIST_STAMPED]
+        kinds = {None: [TWIST, TWIST_STAMPED], True: [TWIST_STAMPED], False: [TWIST]}[is_stamped]
         self.command_topic = topic_name("rt", namespace, "cmd_vel")
         self._commands = [self.node.subscription("cmd_vel", kind) for kind in kinds]
         self._command_types = kinds
         self._poses = self.node.subscription("initialpose", POSE_STAMPED) if has_map else None
         self._stream = Quality(max(USUAL.depth, math.ceil(KEPT_S * rate_Hz)))
         tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
+        slope_rad = base.scene.vehicle.get("ground", {}).get("slope_rad", 0.0)
+        self._upward = GRAVITY_M_PER_S2 * math.cos(slope_rad)  # what the ground's support shows, across it
         self._left_out = 0
         self._publish_all(tf, description)
-        self._serve()
+        if has_services:
+            self._serve()
 
     # ---- publishers
 
@@ -151,7 +155,7 @@ class RobotNode:
         self.heading_rad += rate * period_s
         self._turned.put(math.sin(0.5 * self.heading_rad), math.cos(0.5 * self.heading_rad))
         self._rate.put(rate)
-        self._acceleration.put(ahead, left, GRAVITY_M_PER_S2)
+        self._acceleration.put(ahead, left, self._upward)
         self._imu.write(stamp)
         self.messages += 5
         if self._battery is not None and seen.supply is not None:

@@ -29,6 +29,7 @@ from laconic.scene.table import read_toml
 HOUSEKEEPING_S = 0.02    # between looks for requests
 GRAPH_S = 0.5            # between looks at the graph
 DIAGNOSTICS_S = 1.0
+LINE_S = 60.0            # between lines of a long run
 CATCH_UP_S = 0.2         # a loop that is later gives up what it has missed
 JUMP_S = 0.1             # of the system's clock against the monotonic one
 MOST_LATENESS = 100_000  # that are kept
@@ -48,8 +49,9 @@ class Ros2Options:
     rate_Hz: float = 50.0                 # noqa: N815
     is_sim_time: bool = False
     speed: float = 1.0
-    is_stamped: bool = False
+    is_stamped: bool | None = None        # None: both kinds of command
     announces: bool = True
+    has_services: bool = True
     is_local: bool = False
     shares_tf: bool = False
     frames: Sequence[str] = ()
@@ -99,8 +101,19 @@ class Session:
         self.refusals: dict[int, str] = {}
         self.lateness, self.cycles, self.time_ns = Lateness(), 0, 0
         self.map = Map.read(options.map_file) if options.map_file else None
+        self._parent, self._frames = check_name("--namespace", options.namespace), frames_of(options.frames)
+        self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
         self.participant = Participant(options.domain, options.distribution, is_local=options.is_local,
                                        announces=options.announces)
+        try:
+            self._join()
+        except BaseException:
+            self.participant.close()
+            raise
+
+    def _join(self) -> None:
+        """Makes the nodes, and tells the graph of them."""
+        options = self.options
         self.robots = [self._robot(number) for number in range(options.robots)]
         shared = self.participant.nodes[0]
         self._diagnostics = shared.publisher("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
@@ -108,16 +121,17 @@ class Session:
         self.scanner = Scanner(self.map, self.robots) if self.map else None
         self.participant.announce()
         self._next_s = dict.fromkeys(("services", "graph", "diagnostics"), -math.inf)
+        self._next_s["line"] = LINE_S + (0.0 if options.is_sim_time else self.clock.now_s())
         self._offset_ns = self.clock.wall_ns() - round(self.clock.now_s() * NANO)
 
     def _robot(self, number: int) -> RobotNode:
-        options, parent = self.options, check_name("--namespace", self.options.namespace)
+        options, parent, text = self.options, self._parent, self._description
         namespace = parent if options.robots == 1 else f"{parent.rstrip('/')}/robot{number + 1}"
-        text = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
-        node = RobotNode(self.participant, self.base, number, namespace=namespace, frames=frames_of(options.frames),
+        node = RobotNode(self.participant, self.base, number, namespace=namespace, frames=self._frames,
                          is_sim_time=options.is_sim_time, is_stamped=options.is_stamped,
                          has_map=options.is_loopback or self.map is not None, shares_tf=options.shares_tf,
-                         told=self.told, rate_Hz=options.rate_Hz, description=text)
+                         told=self.told, rate_Hz=options.rate_Hz, description=text,
+                         has_services=options.has_services)
         if text is not None and number == 0:
             lacking = [name for name in node.joint_names if f'"{name}"' not in text]
             if lacking:
@@ -170,11 +184,11 @@ class Session:
 
     def _housekeeping(self, now_s: float) -> None:
         if self._is_due("services", now_s, HOUSEKEEPING_S):
-            for number, robot in enumerate(self.robots):
-                before = self.base.motion.steps, robot.told.counts.copy()
+            for robot in self.robots:
                 robot.answer(now_s)
-                if before[1] != robot.told.counts:
-                    self.refusals.pop(number, None)
+            for number in [*self.refusals]:
+                if not self.base.motion.has_refused(number):  # it was reset or placed
+                    del self.refusals[number]
         if self._is_due("graph", now_s, GRAPH_S):
             self._look_at_graph(now_s)
         if self._is_due("diagnostics", now_s, DIAGNOSTICS_S):
@@ -184,6 +198,11 @@ class Session:
             sent(self._diagnostics, diagnostics(
                 (robot.status(self.refusals.get(number, ""), self.base.motion.grip(number), late)
                  for number, robot in enumerate(self.robots)), self.time_ns))
+
+        if self._is_due("line", now_s, LINE_S):
+            commands = sum(robot.command.count for robot in self.robots)
+            self.say(f"{self.cycles * self.period_s:.0f} s of the robot's time: {commands} commands heard, "
+                     f"{self.lateness.late} cycles late")
 
     def _look_at_graph(self, now_s: float) -> None:
         for name in self.participant.namesakes():

@@ -218,8 +218,8 @@ def _motor(table: Table, kind: str, motor_key: str, gain: str, damping: str, bod
         "rotor_inertia_kgm2"))
     motor.done()
     return {"gain_Nm_per_V": ratio * torque / resistance,
-            "damping_Nms": ratio**2 * (torque * emf / resistance + friction),
-            "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio**2 * rotor}
+            "damping_Nms": ratio * ratio * (torque * emf / resistance + friction),
+            "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio * ratio * rotor}
 
 
 # --------------------------------------------------------------------------- names, limits, order
@@ -313,9 +313,21 @@ KEYS_OF_FORMS = {
 """The keys of the short forms for those of a body."""
 
 
+WORDS_IN_FILES = {
+    ", or give ground.friction_coefficient, so that wheels slip": "",  # it does not act on vehicles with hinges yet
+    "this wheel and wheel 0 ask": "this wheel and those of the carriage ask"}
+AT_STARTS = {"vehicle.body: ": "vehicle: ", "twist: ": "steering_twist: ", "twist_rate: ": "steering_twist: "}
+"""What the core says, and what holds of a scene file."""
+
+
 def refusal_of_hinges(refused: Refused, hinges: Sequence[Hinge], wheel_places: Sequence[str]) -> Refused:
     """A refusal of the core by the tables of the file: the core counts all bodies and all wheels."""
     text = refused.message
+    for core, file in WORDS_IN_FILES.items():
+        text = text.replace(core, file)
+    for core, file in AT_STARTS.items():
+        if text.startswith(core):
+            text = file + text.removeprefix(core)
     if found := re.match(r"vehicle\.body\[(\d+)\](?:\.(\w+))?: ", text):
         hinge = hinges[min(int(found[1]), len(hinges)) - 1]
         key = KEYS_OF_FORMS[hinge.form].get(found[2] or "", found[2] or "")

@@ -73,6 +73,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
 def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals: Sequence[str]) -> dict[str, Any]:
     """The rest of a scene whose vehicle has bodies on hinges: other signals, other methods, no sensors."""
     vehicle, hinges = parts["vehicle"], hung.hinges
+    check_ideal(top, vehicle, hung.wheel_places)
     known = {signal: name for name, of_name in input_signals(vehicle, hinges).items() for signal in of_name}
     parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), method_names(), reals)
@@ -89,10 +90,25 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     outputs = top.table("outputs")
     signals = read_hinge_signals(outputs, output_signals_of(vehicle, hinges))
     parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
-    parts["sensors"] = NO_SENSORS
+    if top.has("base"):
+        top.fail("base", "is for laconic ros2, which does not take vehicles with hinges yet; take the table out")
+    parts["sensors"], parts["base"] = NO_SENSORS, None
     parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"])
     top.done()
     return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
+
+
+def check_ideal(top: Table, vehicle: Mapping[str, Any], wheel_places: Sequence[str]) -> None:
+    """Fails for ground friction and limits of drives, which do not act on vehicles with hinges yet."""
+    remedy = "does not act on vehicles with hinges yet; take it out for a ground that holds every wheel"
+    for key in vehicle.get("ground", {}):
+        if not key.startswith("slope_"):
+            top.fail(f"ground.{key}", f"{remedy}, and give vehicle.friction_coefficient to see where it would not")
+    if "drive" in vehicle:
+        top.fail("vehicle.drive", "limits no drive of a vehicle with hinges yet; take it out")
+    for place, wheel in zip(wheel_places, vehicle["wheel"], strict=True):
+        if wheel.get("motor_circuit"):
+            top.fail(f"{place}.motor_circuit", f"{remedy.partition(';')[0]}; take it out")
 
 
 def check_start_with_hinges(top: Table, initial: Mapping[str, Any]) -> None:

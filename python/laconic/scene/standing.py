@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 STEP_S = 1e-3   # of a plant that takes none
 OUTSIDE_M = 1e-6  # what is less is rounding
+ABOVE_MM = 0.5  # of a line: above it, but for rounding in a file
 NO_LOAD = 1e-9  # of the weight: rounding
 REMEDY = "give what else it stands on as [[vehicle.support]]; the run holds it level"
 
@@ -78,8 +79,8 @@ def why_it_tips(vehicle: Mapping[str, Any]) -> str:
     if (line := _one_line(points)) is not None:
         off_mm = 1e3 * abs(float(np.cross([*line[1], 0.0], [*(centre - line[0]), 0.0])[2]))
         where = "on one point" if len(points) == 1 else f"in one line ({_listed(names)})"
-        return (f"nothing keeps it from tipping: it stands {where}, and its centre of mass is {off_mm:.3g} mm off; "
-                f"{REMEDY}")
+        centre_is = "above it" if off_mm < ABOVE_MM else f"{off_mm:.3g} mm off"
+        return f"nothing keeps it from tipping: it stands {where}, and its centre of mass is {centre_is}; {REMEDY}"
     hull = _hull(points)
     edges = [(hull[k], hull[(k + 1) % len(hull)]) for k in range(len(hull))]
     outside = [(_right_of(points[a], points[b], centre), a, b) for a, b in edges]

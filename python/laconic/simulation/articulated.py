@@ -154,7 +154,7 @@ def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> A
         plant = vehicle.plant(scene.run.method, scene.run.step_s, hinge_rate_rad_per_s=rates, **given)
     except Refused as refused:
         raise scene.refusal_in_file(refused, "at t = 0 s") from None
-    size = float(np.linalg.norm([*start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, *rates]))
+    size = max(map(abs, (*start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, *rates)))
     if plant.changed_m_per_s > (ALLOWED if vehicle.core.real == "double" else IN_SINGLE) * max(1.0, size):
         near = plant.motion()
         x, y = near.velocity_m_per_s

@@ -22,7 +22,9 @@ from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 
 ACROSS = 1e-9    # of an axle's direction: rounding
-ROUNDING = 1e-9  # of a limit
+ROUNDING = 1e-9  # of a limit of rate
+OF_ANGLE = 1e-12  # rad
+STUCK = 1e-10    # of the way to a twist: the hinge is at its stop
 HALVINGS = 50    # of the way to a twist beyond a limit
 
 
@@ -66,12 +68,17 @@ class Commands:
                        if signal.partition("[")[0] not in (ANGLE, CURVATURE)]
         self._steering = _Steering(self.scene, self._numbers) if self.vehicle.is_coordinated else None
         self._twist: np.ndarray | None = None
+        self._stuck: tuple[np.ndarray, Hinge, str, float, float] | None = None  # the target of a hinge at its stop
 
     # ---- rows
 
     def first_row(self) -> np.ndarray:
-        """The inputs at the start."""
-        return self._rows(0, 1)[0, 0]
+        """The inputs at the start, where coordinated wheels point as commanded, within their stops."""
+        row = self._rows(0, 1)[0, 0]
+        if self._steering is not None and self._steering.is_limited:
+            slot = self.vehicle.slot(TWIST)
+            row[slot : slot + 3] = self._start_twist(self._steering, row[slot : slot + 3])
+        return row
 
     def rows(self, first: int, count: int) -> np.ndarray:
         """Inputs at the start and end of steps `first` … in a row (steps, 2, numbers); steps come in order. Fewer where
@@ -133,7 +140,7 @@ class Commands:
             else:
                 target = given[k, 1, column]
                 within = min(max(target, hinge.low_rad), hinge.high_rad)
-                if abs(within - target) > ROUNDING:
+                if abs(within - target) > OF_ANGLE:
                     self._limit(hinge, "angle", first + k, target, within)
                 wanted = np.full(2, (within - angle) / h)
             rates = np.clip(wanted, -most, most)
@@ -141,7 +148,7 @@ class Commands:
                 self._limit(hinge, "rate", first + k, float(np.max(np.abs(wanted))), most)
             end = angle + 0.5 * h * float(rates.sum())
             stop = min(max(end, hinge.low_rad), hinge.high_rad)
-            if abs(stop - end) > ROUNDING:
+            if abs(stop - end) > OF_ANGLE:
                 self._limit(hinge, "angle", first + k, end, stop)
                 rates = np.full(2, (stop - angle) / h)
             rows[k, :, slot], angle = rates, stop
@@ -166,49 +173,77 @@ class Commands:
         if not steering.is_limited:
             return
         slot, h = self.vehicle.slot(TWIST), self.inputs.step_s
-        if self._twist is None:
-            self._twist = steering.unit(rows[0, 0, slot : slot + 3])
-            for hinge, angle in zip(steering.hinges, steering.angles(self._twist), strict=True):
-                turns = round((self._angle[hinge.name] - angle) / (2.0 * math.pi))
-                self._angle[hinge.name] = angle + 2.0 * math.pi * turns
         for k in range(len(rows)):
-            target = steering.unit(rows[k, 1, slot : slot + 3])
-            if not np.any(target):
+            target, now = steering.unit(rows[k, 1, slot : slot + 3]), self._twist
+            if now is None or not np.any(target):
                 return  # which the core refuses
             reached = self._towards(steering, target, first + k, h)
-            rows[k, 0, slot : slot + 3], rows[k, 1, slot : slot + 3] = self._twist, reached
-            for hinge, turn in zip(steering.hinges, steering.turns(self._twist, reached), strict=True):
-                self._angle[hinge.name] += turn
+            rows[k, 0, slot : slot + 3], rows[k, 1, slot : slot + 3] = now, reached
+            for hinge, turn in zip(steering.hinges, steering.turns(now, reached), strict=True):
+                self._angle[hinge.name] += float(turn)
             self._twist = reached
+
+    def _start_twist(self, steering: _Steering, given: np.ndarray) -> np.ndarray:
+        """The twist at the start: the given one, or as near to it from straight ahead as the stops allow."""
+        target = steering.unit(given)
+        self._twist = target
+        if not np.any(target):
+            return given  # which the core refuses
+        self._take_angles(steering, target)
+        if any(not hinge.low_rad - OF_ANGLE <= self._angle[hinge.name] <= hinge.high_rad + OF_ANGLE
+               for hinge in steering.hinges):
+            self._twist = np.array([1.0, 0.0, 0.0])
+            self._take_angles(steering, self._twist)
+            self._twist = self._towards(steering, target, 0, math.inf)
+            self._take_angles(steering, self._twist)
+        return self._twist
+
+    def _take_angles(self, steering: _Steering, twist: np.ndarray) -> None:
+        """Angles of the hinges, next to those that the file gives."""
+        for hinge, angle in zip(steering.hinges, steering.angles(twist), strict=True):
+            turns = round((hinge.start_angle_rad - angle) / (2.0 * math.pi))
+            self._angle[hinge.name] = angle + 2.0 * math.pi * turns
 
     def _towards(self, steering: _Steering, target: np.ndarray, step: int, h: float) -> np.ndarray:
         """As far from the present twist to the target as limits allow."""
         assert self._twist is not None
         now = self._twist
-        broken = self._broken(steering, now, target, h)
+        if self._stuck is not None and np.array_equal(target, self._stuck[0]):  # at a stop, as in the step before
+            self._limit(*self._stuck[1:3], step, *self._stuck[3:])
+            return now
+        broken, low, high = self._broken(steering, now, target, h), 0.0, 1.0
         if broken is None:
             return target
-        self._limit(broken[0], broken[1], step, *broken[2:])
-        low, high = 0.0, 1.0
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            if self._broken(steering, now, now + middle * (target - now), h) is None:
-                low = middle
-            else:
-                high = middle
+            nearer = self._broken(steering, now, now + middle * (target - now), h)
+            low, high, broken = (middle, high, broken) if nearer is None else (low, middle, nearer)
+        hinge, what, _, limit = broken  # the one that holds it here
+        asked = self._asked(steering, hinge, what, now, target, h)
+        self._limit(hinge, what, step, asked, limit)
+        self._stuck = (target, hinge, what, asked, limit) if what == "angle" and low < STUCK else None
         return steering.unit(now + low * (target - now))
+
+    def _asked(self, steering: _Steering, hinge: Hinge, what: str, now: np.ndarray, target: np.ndarray, h: float
+               ) -> float:
+        """The rate or angle that the command asks of a hinge."""
+        turn = steering.turns(now, target)[steering.hinges.index(hinge)]
+        return float(abs(turn) / h if what == "rate" else self._angle[hinge.name] + turn)
 
     def _broken(self, steering: _Steering, now: np.ndarray, then: np.ndarray, h: float
                 ) -> tuple[Hinge, str, float, float] | None:
         """The first limit that a step from one twist to another breaks: hinge, kind, value, limit."""
-        for hinge, turn in zip(steering.hinges, steering.turns(now, then), strict=True):
-            most = hinge.rate_limit_rad_per_s
-            if abs(turn) > h * most * (1.0 + ROUNDING):
-                return hinge, "rate", abs(turn) / h, most
-            angle = self._angle[hinge.name] + turn
-            if angle > hinge.high_rad + ROUNDING or angle < hinge.low_rad - ROUNDING:
-                return hinge, "angle", angle, hinge.high_rad if turn > 0.0 else hinge.low_rad
-        return None
+        turns = steering.turns(now, then)
+        angles = np.array([self._angle[hinge.name] for hinge in steering.hinges]) + turns
+        fast = np.abs(turns) > h * steering.rates * (1.0 + ROUNDING) if math.isfinite(h) else np.zeros(len(turns), bool)
+        far = (angles > steering.highs + OF_ANGLE) | (angles < steering.lows - OF_ANGLE)
+        if not (fast.any() or far.any()):
+            return None
+        at = int(np.argmax(fast | far))
+        hinge = steering.hinges[at]
+        if fast[at]:
+            return hinge, "rate", abs(turns[at]) / h, hinge.rate_limit_rad_per_s
+        return hinge, "angle", angles[at], hinge.high_rad if turns[at] > 0.0 else hinge.low_rad
 
 
 class _Steering:
@@ -220,6 +255,8 @@ class _Steering:
         self.hinges = [hinge for hinge in scene.hinges if hinge.kind == "coordinated"]
         self.places = np.array([(body["hinge_x_m"], body["hinge_y_m"]) for body in bodies])
         self._size_m = max(float(np.abs(self.places).max()), 1e-3)
+        self.rates, self.lows, self.highs = (np.array([getattr(hinge, name) for hinge in self.hinges])
+                                             for name in ("rate_limit_rad_per_s", "low_rad", "high_rad"))
         self.is_limited = any(hinge.has_stops or math.isfinite(hinge.rate_limit_rad_per_s) for hinge in self.hinges)
         self._axle_x_m = self._axle_of_carriage() if CURVATURE in numbers or ANGLE in numbers else 0.0
         self._base_m = float(np.mean(self.places[:, 0])) - self._axle_x_m
@@ -258,8 +295,11 @@ class _Steering:
 
     def unit(self, twist: np.ndarray) -> np.ndarray:
         """The twist of size 1, lengths over the vehicle's; 0 stays 0."""
-        size = float(np.linalg.norm(twist * (1.0, 1.0, self._size_m)))
-        return twist / size if size > 0.0 else np.zeros(3)
+        largest = float(np.abs(twist).max())
+        if not 0.0 < largest < math.inf:
+            return np.zeros(3)
+        scaled = twist / largest
+        return np.asarray(scaled / np.linalg.norm(scaled * (1.0, 1.0, self._size_m)))
 
     def _directions(self, twist: np.ndarray) -> np.ndarray:
         """Velocity at each hinge as a complex number."""
@@ -270,6 +310,6 @@ class _Steering:
         """Angle of each hinge in (−π, π]."""
         return [float(angle) for angle in np.angle(self._directions(twist))]
 
-    def turns(self, now: np.ndarray, then: np.ndarray) -> Sequence[float]:
+    def turns(self, now: np.ndarray, then: np.ndarray) -> np.ndarray:
         """How far each hinge turns from one twist to another."""
-        return [float(turn) for turn in np.angle(self._directions(then) * np.conj(self._directions(now)))]
+        return np.asarray(np.angle(self._directions(then) * np.conj(self._directions(now))))

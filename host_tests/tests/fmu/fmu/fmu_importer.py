@@ -211,7 +211,8 @@ class Importer:
             return len(names)
         size = 1
         for dimension in getattr(self.variables[names[0]], "dimensions", None) or []:
-            size *= int(dimension.start) if dimension.start else self.wheels
+            other = dimension.variable is not None and dimension.variable.name != "wheel_count"
+            size *= int(dimension.start) if dimension.start else int(dimension.variable.start) if other else self.wheels
         return size
 
     @property

@@ -119,7 +119,8 @@ def test_two_source_fmus_in_one_static_program_give_each_its_own_results(tmp_pat
 @pytest.mark.nightly
 @pytest.mark.parametrize("name", ["Laconic_fmi3", "LaconicEstimate_fmi2", "LaconicEstimate_fmi3",
                                   "LaconicController_fmi2", "LaconicController_fmi3", "LaconicDerivatives_fmi3",
-                                  "LaconicNode_fmi3", "LaconicCanBus_fmi3", "LaconicCanController_fmi3"])
+                                  "LaconicNode_fmi3", "LaconicCanBus_fmi3", "LaconicCanController_fmi3",
+                                  "LaconicArticulated_fmi2", "LaconicArticulated_fmi3"])
 def test_every_name_of_a_source_fmu_has_the_prefix_of_its_variant(name: str, tmp_path: Path) -> None:
     identifier, _, version = name.partition("_")
     names = global_names(compiled(sources_of(built(f"fmu/{name}.fmu"), tmp_path), "-Wall", "-Werror"))
@@ -127,12 +128,31 @@ def test_every_name_of_a_source_fmu_has_the_prefix_of_its_variant(name: str, tmp
     assert [each for each in sorted(names) if not ours.match(each)] == []
 
 
-@pytest.mark.parametrize("variant", ["Laconic", "LaconicDerivatives", "LaconicEstimate"])
+@pytest.mark.parametrize("variant", ["Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated"])
 @pytest.mark.parametrize("version", [2, 3])
 def test_each_variant_has_a_model_identifier_of_its_own(variant: str, version: int) -> None:
     with Importer(built(f"fmu/{variant}_fmi{version}.fmu")) as importer:
         kinds = [importer.description.coSimulation, importer.description.modelExchange]
         assert {kind.modelIdentifier for kind in kinds if kind is not None} == {variant}
+
+
+@needs_gcc
+def test_sources_refuse_constants_in_single_precision_by_a_line_that_names_the_option(tmp_path: Path) -> None:
+    sources = sources_of(built("fmu/LaconicController_fmi2.fmu"), tmp_path)
+    for name in ("variable_table.c", "co_simulation.c"):
+        done = subprocess.run(["gcc", "-std=c99", "-w", "-fsyntax-only", "-fsingle-precision-constant", "-I.", name],
+                              cwd=sources, capture_output=True, text=True, check=False)
+        assert done.returncode != 0
+        assert "fmu_needs_compiling_without_fsingle_precision_constant" in done.stderr
+
+
+@needs_gcc
+def test_macros_of_windows_and_embedded_compilers_do_not_change_the_sources(tmp_path: Path) -> None:
+    macros = [f"-D{word}=!" for word in ("near", "far", "huge", "small", "hyper", "pascal", "cdecl", "interface")]
+    sources = sources_of(built("fmu/LaconicArticulated_fmi3.fmu"), tmp_path)
+    names = sorted(path.name for path in sources.glob("*.c"))
+    subprocess.run(["gcc", "-std=c99", "-fsyntax-only", "-Wall", "-Werror", *macros, "-I.", f"-I{HEADERS}", *names],
+                   cwd=sources, check=True)
 
 
 @needs_gcc

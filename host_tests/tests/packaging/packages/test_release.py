@@ -23,8 +23,7 @@ from laconic_build.release.parts import Places
 from laconic_build.release.products import products
 from laconic_build.release.tree import NoRelease, Tree, check_tools, tree_of
 from laconic_build.wheel import cross
-from laconic_build.wheel.contents import FMUS
-from laconic_build.wheel.platforms import PLATFORMS
+from laconic_build.wheel.contents import FMUS, PLATFORMS
 from laconic_fmu.cross import TARGETS
 
 DATE = 1_700_000_000

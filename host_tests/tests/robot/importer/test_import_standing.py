@@ -133,7 +133,8 @@ def test_every_wheel_and_support_is_listed_with_its_share_of_the_weight(
 TIPS = [(robot(TWO_WHEELS.replace("0.02 0.01 0.03", "0.06 0 0.03")),
          "nothing keeps it from tipping: it stands in one line (wheel 1 and wheel 2), and its centre of mass is 50 mm"),
         (robot(TWO_WHEELS.replace("0.02 0.01 0.03", "0 0 0.03")),
-         "nothing keeps it from tipping: it stands in one line"),
+         "nothing keeps it from tipping: it stands in one line (wheel 1 and wheel 2), and its centre of mass is above "
+         "it; give what else it stands on"),
         (robot(TWO_WHEELS.replace("0.02 0.01 0.03", "0.06 0 0.03"), BALL),
          "it tips: its centre of mass lies 50 mm outside what it stands on, beyond the line from")]
 

@@ -364,3 +364,15 @@ def test_more_wheels_than_the_core_has_room_for_are_refused_at_once(tmp_path: Pa
         imported(tmp_path, robot(body, *(wheel(f"w{k}", "base", f"{0.1 * k} 0.2 -0.05") for k in range(30))))
     with pytest.raises(BadInput, match="100 joints have shapes that reach the ground, more than 64 wheels"):
         imported(tmp_path, robot(body, *(wheel(f"w{k}", "base", f"{0.1 * k} 0.2 -0.05") for k in range(100))))
+
+
+@pytest.mark.parametrize("head", [
+    "<!-- a robot -- with two wheels -->", '<!-- a robot -->\n<?xml version="1.0"?>\n',
+    '\n<?xml version="1.0" encoding="utf-8"?>', '<!-- one -- two\nthree -->\n<?xml version="1.0"?>'])
+def test_what_simulators_read_beyond_xml_is_read(tmp_path: Path, head: str) -> None:
+    """Comments with -- in them, and the first line of XML after comments or blank lines."""
+    assert len(vehicle(tmp_path, head + SDF, "robot.sdf")["wheel"]) == 2
+    assert len(vehicle(tmp_path, head + robot(TWO_WHEELS), "robot.urdf")["wheel"]) == 2
+    broken = head + robot(TWO_WHEELS).replace("</link>", "</lnk>", 1)
+    with pytest.raises(BadInput, match=f"line {1 + head.count(chr(10))}, column .*: the element that is closed is not"):
+        imported(tmp_path, broken)

@@ -8,10 +8,10 @@ from matplotlib import image
 
 from laconic.cli import main as cli
 from laconic.scene import read_scene
+from laconic.tools.analyse.analyse import study
 from laconic.tools.analyse.findings import StudyOptions
 from laconic.tools.analyse.from_core import subject_of
 from laconic.tools.analyse.pictures_steady import driven_picture
-from laconic.tools.analyse.study import study
 from scene_text import ideal_scene_names
 
 SCENES = ideal_scene_names()

@@ -13,7 +13,7 @@ from laconic.cli import main as cli
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.plotting import figure, save
 from laconic.scene import read_scene
-from laconic.tools.analyse.analyse import analyse
+from laconic.tools.analyse.analyse import analyse, study
 from laconic.tools.analyse.bifurcation_part import bifurcation_part
 from laconic.tools.analyse.continuation import diagram
 from laconic.tools.analyse.findings import Study, StudyOptions
@@ -22,7 +22,6 @@ from laconic.tools.analyse.geometry import diagnose
 from laconic.tools.analyse.motions import command_parameter, default_range, vehicle_parameter
 from laconic.tools.analyse.pictures_steady import bifurcation_picture
 from laconic.tools.analyse.reach import HEADROOM, largest_nu
-from laconic.tools.analyse.study import study
 from laconic.tools.report.svg import svg
 from scene_text import constant, wheel
 

@@ -8,10 +8,10 @@ from matplotlib import pyplot as plt
 
 from laconic.pictures.curve_style import alternating_markers, nested, wrapped
 from laconic.scene import read_scene
+from laconic.tools.analyse.analyse import study
 from laconic.tools.analyse.findings import StudyOptions
 from laconic.tools.analyse.from_core import subject_of
 from laconic.tools.analyse.pictures import PICTURES
-from laconic.tools.analyse.study import study
 from scene_text import constant, table
 
 LONG_NAME = "A robot of many wheels whose maker gave it a name that is longer than any picture is wide, almost twice"

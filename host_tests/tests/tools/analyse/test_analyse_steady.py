@@ -8,10 +8,9 @@ from laconic.scene import read_scene
 from laconic.scene.methods import EXPLICIT
 from laconic.tools.analyse import confirm, pushed
 from laconic.tools.analyse.continuation import diagram
-from laconic.tools.analyse.cycle import cycle_near
+from laconic.tools.analyse.cycle import cycle_near, first_lyapunov
 from laconic.tools.analyse.field import Field
 from laconic.tools.analyse.from_core import field_of, nu_rates, subject_of
-from laconic.tools.analyse.hopf import first_lyapunov
 from laconic.tools.analyse.motions import command_parameter, commanded_straight, default_range, straight_thresholds
 from laconic.tools.analyse.steady import SteadyMotion, families, steady_motions
 

@@ -16,8 +16,7 @@ from laconic.scene import read_scene
 from laconic.simulation import simulate
 from laconic.tools.enclosure.balls import ball, precision, times, widened
 from laconic.tools.enclosure.defect import growth_rate, is_positive
-from laconic.tools.enclosure.equation import Equation, equation_of
-from laconic.tools.enclosure.loads import Stretch
+from laconic.tools.enclosure.equation import Equation, Stretch, equation_of
 from laconic.tools.enclosure.motion import Motion
 from laconic.tools.enclosure.readings import entries_as_written
 from laconic.tools.enclosure.references import enclose_case, reading_of_case

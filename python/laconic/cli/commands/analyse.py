@@ -43,11 +43,9 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     """
     from laconic.base.progress import progress_bar
     from laconic.scene import read_scene
-    from laconic.tools.analyse.analyse import chosen_subject
+    from laconic.tools.analyse.analyse import chosen_subject, study
     from laconic.tools.analyse.findings import StudyOptions
-    from laconic.tools.analyse.older_page import pictures_of_older_page
-    from laconic.tools.analyse.report import as_numbers, as_text
-    from laconic.tools.analyse.study import study
+    from laconic.tools.analyse.report import as_numbers, as_text, pictures_of_older_page
 
     _check(low, high, straight, start)
     options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)

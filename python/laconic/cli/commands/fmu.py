@@ -13,6 +13,7 @@ from laconic.cli.options import OutputFile, SceneName, json_flag
 from laconic.cli.streams import warn
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
+from laconic.fmu.hinges import left_out
 from laconic.fmu.ssp import make_ssp
 from laconic.scene import read_scene
 from laconic.scene.drives import DRIVE_PROTOCOLS
@@ -20,7 +21,7 @@ from laconic_fmu.network import TX_CLOCKS
 
 
 @click.command("fmu")
-@click.argument("scene", type=SceneName())
+@click.argument("scene", type=SceneName(hinges=True))
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
 @click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
@@ -85,6 +86,8 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
     else:
         shown = "" if size is None else f" ({size / 1000:.0f} kB)"
         click.echo(f"wrote {made}{shown}: {given.name}, {given.wheel_count} wheels")
+    if line := left_out(given):
+        warn(line)
     if given.run.real != "double":
         warn(f'{given.path}: run.real: is "{given.run.real}", but FMUs compute in double precision')
 

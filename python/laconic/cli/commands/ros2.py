@@ -11,7 +11,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, json_flag, one_of
 from laconic.errors import BadInput, ResultFails
-from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION
+from laconic.ros2 import GID_BYTES, MIDDLEWARES, USUAL_DISTRIBUTION
 from laconic.scene import METHODS, read_scene
 
 if TYPE_CHECKING:
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 @click.command("ros2")
 @click.argument("scene_name", type=SceneName(), metavar="SCENE")
 @one_of("--distro", tuple(GID_BYTES), "Distribution of the peers, instead of ROS_DISTRO or jazzy")
+@one_of("--rmw", tuple(MIDDLEWARES), "Middleware of the peers, instead of RMW_IMPLEMENTATION or cyclonedds; fastrtps "
+        "leaves out services")
 @click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
 @click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
@@ -29,7 +31,8 @@ if TYPE_CHECKING:
 @click.option("--rate", "rate_Hz", type=float, default=50.0, metavar="HZ", show_default=True, help="Of all topics.")
 @click.option("--sim-time", "is_sim_time", is_flag=True, help="Stamps of simulated time, and /clock.")
 @click.option("--speed", type=float, default=1.0, help="With --sim-time: seconds of the robot in a real one.")
-@click.option("--stamped", "is_stamped", is_flag=True, help="Hear TwistStamped alone on cmd_vel, not Twist, too.")
+@click.option("--stamped/--unstamped", "is_stamped", default=None,
+              help="Hear TwistStamped alone, or Twist alone, on cmd_vel.  [default: both]")
 @click.option("--frame", "frames", multiple=True, metavar="NAME=FRAME",
               help="Another name of the frame base, odom, map, imu or scan.")
 @click.option("--shared-tf", "shares_tf", is_flag=True, help="/tf for all, with the namespace before each frame.")
@@ -46,8 +49,8 @@ if TYPE_CHECKING:
 @one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @json_flag("Machine-readable summary.")
-def command(scene_name: str, distro: str | None, domain: int | None, is_silent: bool, method: str | None,
-            step_s: float | None, json_wanted: bool, **given: Any) -> int:
+def command(scene_name: str, distro: str | None, rmw: str | None, domain: int | None, is_silent: bool,
+            method: str | None, step_s: float | None, json_wanted: bool, **given: Any) -> int:
     """Runs the robot of SCENE as a ROS 2 node: cmd_vel in; odom, tf, joint_states, imu … out.
 
     A controller as bases have one turns velocities into voltages, and odom is what its encoders make of the motion;
@@ -58,7 +61,8 @@ def command(scene_name: str, distro: str | None, domain: int | None, is_silent: 
 
     check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s)
-    options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent, **given)
+    options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent,
+                          has_services=middleware_of(rmw) != "fastrtps", **given)
 
     def say(text: str) -> None:
         click.echo(text, err=json_wanted)
@@ -87,6 +91,12 @@ def distribution_of(given: str | None) -> str:
     return given or (of_environment if of_environment in GID_BYTES else USUAL_DISTRIBUTION)
 
 
+def middleware_of(given: str | None) -> str:
+    """The middleware of the command line, or that of the environment where it is known."""
+    of_environment = os.environ.get("RMW_IMPLEMENTATION", "")
+    return given or next((name for name, package in MIDDLEWARES.items() if package == of_environment), "cyclonedds")
+
+
 def domain_of(given: int | None) -> int:
     """The domain of the command line, or of the environment, as ROS takes it."""
     text = os.environ.get("ROS_DOMAIN_ID", "")
@@ -102,7 +112,7 @@ def introduction(session: Session) -> str:
     """How to drive it, in two lines."""
     options, robots = session.options, session.robots
     topic = robots[0].command_topic.removeprefix("rt")
-    kind = "TwistStamped" if options.is_stamped else "Twist or TwistStamped"
+    kind = {None: "Twist or TwistStamped", True: "TwistStamped", False: "Twist"}[options.is_stamped]
     more = f" (and those of {len(robots) - 1} more)" if robots[1:] else ""
     stamps = f"simulated time at {options.speed:g} times" if options.is_sim_time else "the system's time"
     torques = "" if session.base.loop.signal == "voltage_V" else "; has no motors, so torques drive its wheels"

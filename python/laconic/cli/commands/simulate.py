@@ -64,10 +64,10 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     belongs_to("--out", bool(out), "--inputs", "--errors")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
-        not_with_hinges(given, errors_wanted, enclose_wanted, film)
+        not_with_hinges(given, errors_wanted, enclose_wanted)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
-                             *(drawn_with_hinges(given) if plot else ()),
+                             *(drawn_with_hinges(given) if plot or film else ()),
                              *(signals_to_enclose(given) if enclose_wanted else ())))
     run = as_far_as_it_goes(given, tuple(signals))
     enclosure = enclosed(run) if enclose_wanted else None
@@ -98,9 +98,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         raise ResultFails(f"{run.refused}{kept_in(out, plot, film)}")
 
 
-def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool, film: Path | None) -> None:
+def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool) -> None:
     """BadInput for what a run of a vehicle with hinges does not have yet."""
-    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted), ("--film", film is not None)):
+    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted)):
         if is_wanted:
             raise BadInput(f"{scene.path}: {option} does not take vehicles with hinges yet; leave it out")
 
@@ -109,7 +109,7 @@ def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
     """What a picture of bodies on hinges needs besides the usual signals."""
     if not scene.has_hinges:
         return ()
-    from laconic.pictures.articulated import DRAWN
+    from laconic.pictures.outlines import DRAWN
     from laconic.scene.hinge_signals import output_signals_of
 
     known = output_signals_of(scene.vehicle, scene.hinges)
@@ -119,7 +119,7 @@ def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
 def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
     """The run, to its end or to the step that is refused."""
     try:
-        return simulate(scene, signals, progress=True, estimated=True)
+        return simulate(scene, signals, progress=True, estimated=not scene.has_hinges)
     except RunRefused as cut_short:
         return cut_short.run
 
@@ -144,8 +144,7 @@ def signals_to_enclose(scene: Scene) -> tuple[str, ...]:
 
 def enclosed(run: Trajectory) -> Enclosure:
     """Encloses the motion of a run, and gives the run its columns."""
-    from laconic.tools.enclosure.study import study_of
-    from laconic.tools.enclosure.tables import as_json, columns_of, lines_of
+    from laconic.tools.enclosure.study import as_json, columns_of, lines_of, study_of
 
     study = study_of(run)
     columns = columns_of(study)

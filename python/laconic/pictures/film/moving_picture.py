@@ -13,7 +13,7 @@ import numpy as np
 
 from laconic.base.outputs import write_text
 from laconic.pictures.film.curves import Panel, curves
-from laconic.pictures.film.robot import robot
+from laconic.pictures.film.robot import hung, robot
 from laconic.pictures.film.timing import timing_of
 from laconic.pictures.film.world import grid_m, world
 from laconic.simulation import Trajectory
@@ -36,8 +36,9 @@ def film(run: Trajectory) -> str:
     timing = timing_of(run.time_s)
     field, moving = world(run, timing, FIELD)
     drawn, wheels = robot(run, timing)
+    bodies, turning = hung(run, timing)
     panels, cursor = curves(_panels(run), run.time_s, timing, (428, HEAD, 276, HEIGHT - HEAD - 10))
-    style = "".join((timing.style(), moving, wheels, cursor))
+    style = "".join((timing.style(), moving, wheels, turning, cursor))
     name, words = escape(_short(run.scene.name)), f"{timing.in_words()}, grid of {grid_m(run, FIELD):g} m"
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
             f'font-family="system-ui, sans-serif" font-size="19" fill="{INK}">\n'
@@ -45,7 +46,7 @@ def film(run: Trajectory) -> str:
             f'<rect width="{WIDTH}" height="{HEIGHT}" rx="10" fill="{PAPER}"/>\n'
             f'<text x="16" y="34" font-size="24" font-weight="600">{name}</text>\n'
             f'<text x="16" y="{HEIGHT - 18}" fill="#5b6672">{words}</text>\n'
-            f"{field.format(robot=drawn)}{panels}</svg>\n")
+            f"{field.format(robot=drawn, bodies=bodies)}{panels}</svg>\n")
 
 
 def _short(name: str) -> str:

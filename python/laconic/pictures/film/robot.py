@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from laconic.core.articulated import CARRIAGE
 from laconic.pictures.film.timing import Timing
 from laconic.pictures.film.world import reach_m
+from laconic.pictures.outlines import DRAWN, hull, outline_points
 from laconic.simulation import Trajectory
 
 BODY, EDGE, WHEEL, TREAD, NOSE = "#f3b54a", "#b97a12", "#2b3a49", "#8fa3b5", "#b97a12"
@@ -17,15 +19,42 @@ THICK = 0.7  # of a wheel, of its radius
 
 def robot(run: Trajectory, timing: Timing) -> tuple[str, str]:
     """The group, and the rules by which the treads turn."""
+    wheels, style = _wheels_of(run, timing, None)
+    return _body(run) + wheels + _marks(run), style
+
+
+def hung(run: Trajectory, timing: Timing) -> tuple[str, str]:
+    """The bodies on hinges, each moving in the world by itself, and the rules by which they do."""
+    groups, style = "", ""
+    outlines = outline_points(run.scene) if run.scene.has_hinges else {}
+    for number, hinge in enumerate(run.scene.hinges, start=1):
+        x, y, heading = (run.columns[f"{name}[{hinge.name}]"] for name in DRAWN[2:])
+        turn = np.degrees(np.unwrap(heading))  # so that the browser turns it the short way
+        states = [f"transform: translate({x[row]:.4f}px, {y[row]:.4f}px) rotate({turn[row]:.2f}deg)"
+                  for row in (*timing.rows, -1)]
+        wheels, of_wheels = _wheels_of(run, timing, hinge.name)
+        style += timing.keyframes(f"b{number}", states[:-1]) + of_wheels
+        style += f".b{number} {{ animation-name: b{number}; {states[-1]}; }}\n"
+        corners = " ".join(f"{point.real:.4f},{point.imag:.4f}" for point in hull(outlines[hinge.name]))
+        wide = 0.6 * run.scene.vehicle["wheel_radius_m"]
+        groups += (f'<g class="m b{number}"><polygon points="{corners}" fill="{BODY}" stroke="{EDGE}" '
+                   f'stroke-width="{wide:.4f}" stroke-linejoin="round"/>\n{wheels}</g>\n')
+    return groups, style
+
+
+def _wheels_of(run: Trajectory, timing: Timing, body: str | None) -> tuple[str, str]:
+    """The wheels of one body, and the rules by which their treads turn."""
     vehicle = run.scene.vehicle
     style, wheels = "", ""
     for number, wheel in enumerate(vehicle["wheel"], start=1):
+        if wheel.get("body") != body and (body is not None or wheel.get("body", CARRIAGE) != CARRIAGE):
+            continue
         radius = wheel.get("radius_m", vehicle["wheel_radius_m"])
         rolled_m = radius * run.columns[f"wheel_angle_rad[{number}]"]
         style += timing.keyframes(f"w{number}", [f"stroke-dashoffset: {-rolled_m[row]:.4f}" for row in timing.rows])
         style += f".w{number} {{ animation-name: w{number}; }}\n"
         wheels += _wheel(wheel, radius, number)
-    return _body(run) + wheels + _marks(run), style
+    return wheels, style
 
 
 def _wheel(wheel: dict[str, Any], radius: float, number: int) -> str:
@@ -43,6 +72,9 @@ def _body(run: Trajectory) -> str:
     vehicle = run.scene.vehicle
     radius = vehicle["wheel_radius_m"]
     points = np.array([(wheel["x_m"], wheel["y_m"]) for wheel in vehicle["wheel"]]).reshape(-1, 2)
+    if run.scene.has_hinges:
+        found = np.array(hull(outline_points(run.scene)[CARRIAGE]))
+        points = np.column_stack([found.real, found.imag])
     if len(points) < 3 or np.linalg.matrix_rank(points - points[0], tol=1e-6) < 2:
         return (f'<circle r="{0.9 * reach_m(run):.4f}" fill="{BODY}" stroke="{EDGE}" '
                 f'stroke-width="{0.1 * radius:.4f}"/>\n')

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from laconic.core.articulated import CARRIAGE
 from laconic.pictures.film.timing import Timing
+from laconic.pictures.outlines import outline_points
 from laconic.simulation import Trajectory
 
 GRIDS_M = tuple(digit * 10.0**power for power in range(-3, 5) for digit in (1, 2, 5))
@@ -33,7 +35,7 @@ def world(run: Trajectory, timing: Timing, box: Box) -> tuple[str, str]:
             f'<g {stroke}><polyline id="way" points="{points}" pathLength="1" style="stroke: inherit"/>'
             f'<use href="#way" stroke="{FAINT}"/><use href="#way" class="m path" stroke="{PATH}" stroke-dasharray="1"/>'
             "</g>\n"
-            f'<g class="m body">{{robot}}</g></g></g>\n', style)
+            f'<g class="m body">{{robot}}</g>{{bodies}}</g></g>\n', style)
 
 
 def pose(run: Trajectory, row: int) -> str:
@@ -46,6 +48,8 @@ def reach_m(run: Trajectory) -> float:
     """From the body frame's origin to the farthest end of a wheel."""
     vehicle = run.scene.vehicle
     radius = vehicle["wheel_radius_m"]
+    if run.scene.has_hinges:
+        return max(2.0 * radius, radius + max(map(abs, outline_points(run.scene)[CARRIAGE]), default=0.0))
     return max([2.0 * radius, *(float(np.hypot(wheel["x_m"], wheel["y_m"])) + wheel.get("radius_m", radius)
                                 for wheel in vehicle["wheel"])])
 
@@ -54,6 +58,11 @@ def _fit(run: Trajectory, box: Box) -> tuple[float, tuple[float, float]]:
     """Pixels to a metre, and the middle of the field in metres, so that the robot stays in it."""
     reach = 1.15 * reach_m(run)
     x, y = run.columns["origin_x_m"], run.columns["origin_y_m"]
+    for name, points in outline_points(run.scene).items() if run.scene.has_hinges else ():
+        if name != CARRIAGE:  # all that is on hinges stays in the field, too
+            reach = max(reach, 1.15 * (max(map(abs, points)) + run.scene.vehicle["wheel_radius_m"]))
+            x = np.append(x, run.columns[f"body_x_m[{name}]"])
+            y = np.append(y, run.columns[f"body_y_m[{name}]"])
     spans = np.ptp(x) + 2.0 * reach, np.ptp(y) + 2.0 * reach
     scale = min(box[2] / spans[0], box[3] / spans[1])
     return float(scale), (float(np.min(x) + np.max(x)) / 2.0, float(np.min(y) + np.max(y)) / 2.0)

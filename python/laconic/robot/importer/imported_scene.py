@@ -119,6 +119,10 @@ class _Writer:
             data["ground"] = self.ground_table(data["vehicle"]["wheel"])
         else:
             self.remark_friction()
+        names = [in_one_line(wheel.name) for wheel in self.ground.wheels]
+        if names and all(names) and len(set(names)) == len(names):
+            data["base"] = {"joint_names": names}
+            self.comments["base", "joint_names"] = "for laconic ros2"
         run = {"run": {"duration_s": DURATION_S, "step_s": FRICTION_STEP_S if slips else STEP_S}}
         scene = self.checked(data | run)
         standing = standing_of(scene)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import stat
 from pathlib import Path
 from xml.etree import ElementTree
@@ -12,6 +13,8 @@ from laconic.errors import BadInput, reason_of
 Element = ElementTree.Element
 MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual robot
 MOST_TAGS = 1_000_000  # that open or close an element
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
 
 
 def xml_root(path: Path, why_not: str) -> Element:
@@ -39,15 +42,13 @@ def root_of(path: Path, text: bytes | str, why_not: str) -> Element:
     declare."""
     if (tags := text.count(b"<") if isinstance(text, bytes) else text.count("<")) > MOST_TAGS:
         raise BadInput(f"{path}: has {tags} tags, more than the {MOST_TAGS} that are read; give the file of a robot")
-    builder = ElementTree.TreeBuilder()
-    parser = expat.ParserCreate()
-    parser.buffer_text = True
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.data
     try:
-        parser.Parse(text, True)
-        root: Element = builder.close()
+        try:
+            return _parsed(text)
+        except expat.ExpatError:
+            if (mended := _mended(text)) == text:
+                raise
+            return _parsed(mended)
     except expat.ExpatError as error:
         if isinstance(text, bytes) and _lacks_encoding(text):
             raise BadInput(f"{path}: is no text in UTF-8, and its first line names no other encoding; save it as "
@@ -55,7 +56,30 @@ def root_of(path: Path, text: bytes | str, why_not: str) -> Element:
         raise BadInput(f"{path}: {why_not}: {_where(error)}") from None
     except (LookupError, ValueError):
         raise BadInput(f"{path}: {why_not}: unknown encoding in its first line; save it as UTF-8") from None
+
+
+def _parsed(text: bytes | str) -> Element:
+    builder = ElementTree.TreeBuilder()
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    parser.Parse(text, True)
+    root: Element = builder.close()
     return root
+
+
+def _mended(text: bytes | str) -> bytes | str:
+    """Without comments, and with its first line first: simulators read files that have -- in comments, or comments
+    ahead of the first line. Lines keep their numbers."""
+    if isinstance(text, str):
+        return _mended(text.encode("utf-8")).decode("utf-8")  # type: ignore[union-attr]  # bytes give bytes
+    blank = COMMENT.sub(lambda found: b"\n" * found[0].count(b"\n"), text)
+    first = DECLARATION.search(blank)
+    if first is None or blank[: first.start()].strip():
+        return blank
+    return first[0] + blank[: first.start()] + blank[first.end():]
 
 
 PLACED = "line {0}, column {1}"

@@ -1,18 +1,68 @@
-"""The analysis of a scene for the command and for programs: which subject it is about, and its parts."""
+"""The analysis of a scene: what may be asked, and the study of all parts."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from laconic.core.given import finite_number, one_of, several
 from laconic.errors import BadInput, shown
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import check_ideal_ground
+from laconic.tools.analyse.bifurcation_part import bifurcation_part
 from laconic.tools.analyse.findings import Study, StudyOptions
+from laconic.tools.analyse.free_part import free_part
 from laconic.tools.analyse.from_core import Subject, rolling_subject, subject_of
+from laconic.tools.analyse.geometry import diagnose
+from laconic.tools.analyse.motions import straight_columns
 from laconic.tools.analyse.parts import GEOMETRY, PARTS
-from laconic.tools.analyse.study import study
+from laconic.tools.analyse.speeds import ROUNDING, without_rest
+from laconic.tools.analyse.steady_part import steady_part
+from laconic.tools.analyse.traction import study as study_traction
 
+# ---- Whether the motions that a user asks for are possible: constraints forbid a differential drive to go
+# sideways.
+
+def check(subject: Subject, options: StudyOptions) -> None:
+    """BadInput when the constraints forbid a ν that was asked for; it names the nearest that they allow."""
+    columns = subject.allowed_columns
+    if options.start is not None:
+        _fits("--start: the constraints forbid this ν", np.array(options.start), columns)
+    if options.straight is not None:
+        _fits("--straight: the constraints forbid this motion", np.array(options.straight), straight_columns(subject))
+
+
+def _fits(refusal: str, nu: np.ndarray, columns: np.ndarray) -> None:
+    size = float(np.abs(nu).max())
+    nearest = columns @ np.linalg.lstsq(columns, nu, rcond=None)[0] if columns.size else np.zeros_like(nu)
+    if np.abs(nearest - nu).max() > ROUNDING * max(1.0, size):
+        shown = " ".join(f"{v:.6g}" for v in without_rest(nearest, size))
+        raise BadInput(f"{refusal}; the nearest allowed one is {shown}")
+
+
+# ---- The whole analysis of one scene, part after part.
+
+def study(subject: Subject, options: StudyOptions, advance: Callable[[float, str], None]) -> Study:
+    """All parts of the options, one after another."""
+    check(subject, options)
+    result = Study(subject)
+    share = 1.0 / len(options.parts)
+    for part in options.parts:
+        advance(0.0, part)
+        if part == "geometry":
+            result.geometry = diagnose(subject)
+            result.words["geometry"] = list(result.geometry.words)
+        elif part == "traction":
+            result.traction = study_traction(subject)
+            result.words["traction"] = list(result.traction.words)
+        else:
+            {"free": free_part, "steady": steady_part, "bifurcation": bifurcation_part}[part](result, options)
+        advance(share, part)
+    return result
+
+
+# ---- The analysis of a scene for the command and for programs: which subject it is about, and its parts.
 
 def chosen_subject(scene: Scene, parts: Sequence[str], at_s: float = 0.0) -> Subject:
     """The vehicle under the inputs of one instant; only the geometry is that of any ground."""

@@ -6,10 +6,9 @@ import numpy as np
 
 from laconic.tools.analyse import confirm, pushed
 from laconic.tools.analyse.continuation import Diagram, diagram
-from laconic.tools.analyse.cycle import cycle_near
+from laconic.tools.analyse.cycle import HopfPoint, cycle_near
 from laconic.tools.analyse.findings import BifurcationPart, CyclePart, Study, StudyOptions
 from laconic.tools.analyse.from_core import Subject
-from laconic.tools.analyse.hopf import HopfPoint
 from laconic.tools.analyse.motions import (
     Parameter,
     commanded_straight,

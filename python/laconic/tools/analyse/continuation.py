@@ -15,8 +15,8 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from scipy.optimize import brentq
 
+from laconic.tools.analyse.cycle import HopfPoint, first_lyapunov, has_oscillating_pair
 from laconic.tools.analyse.field import Field
-from laconic.tools.analyse.hopf import HopfPoint, first_lyapunov, has_oscillating_pair
 from laconic.tools.analyse.speeds import without_rest
 from laconic.tools.analyse.steady import SteadyMotion, classify, steady_at_yaw, steady_motions, steady_polynomial
 

@@ -9,11 +9,10 @@ import numpy as np
 
 from laconic.tools.analyse import confirm, pushed
 from laconic.tools.analyse.continuation import Diagram
-from laconic.tools.analyse.cycle import LimitCycle
+from laconic.tools.analyse.cycle import HopfPoint, LimitCycle
 from laconic.tools.analyse.free_motion import FreeMotion
 from laconic.tools.analyse.from_core import Subject
 from laconic.tools.analyse.geometry import Geometry
-from laconic.tools.analyse.hopf import HopfPoint
 from laconic.tools.analyse.motions import Parameter
 from laconic.tools.analyse.parts import PARTS
 from laconic.tools.analyse.portrait import Portrait

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,25 @@ from laconic.tools.analyse.from_core import Subject
 from laconic.tools.analyse.parts import TITLES
 from laconic.tools.analyse.speeds import of_driver, wheel_radius_m
 from laconic.tools.analyse.traction import Traction
+
+# ---- What an earlier analysis left in the folder of this one: pictures that would stand beside a page they are not
+# of.
+
+def pictures_of_older_page(folder: Path, drawn: Sequence[Path]) -> list[Path]:
+    """Pictures in the folder that the report.json there lists and this run has not drawn.
+
+    A file is the tool's own only when it has one of its pictures' names and that page lists it; all else
+    in the folder is the user's.
+    """
+    from laconic.tools.analyse.pictures import PICTURES
+
+    try:
+        listed = json.loads((folder / "report.json").read_text(encoding="utf-8"))["pictures"]
+        written = {Path(name).name for name in listed}
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+    ours = written & {f"{name}.png" for name in PICTURES} - {path.name for path in drawn}
+    return sorted(path for path in (folder / name for name in ours) if path.is_file())
 
 
 def as_text(study: Study, pictures: list[Path]) -> str:

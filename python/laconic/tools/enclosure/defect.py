@@ -13,8 +13,7 @@ import numpy as np
 from flint import arb, arb_poly
 
 from laconic.tools.enclosure.balls import Matrix, Vector, combined, cross, dot, largest, length
-from laconic.tools.enclosure.equation import Equation
-from laconic.tools.enclosure.loads import Forcing
+from laconic.tools.enclosure.equation import Equation, Forcing
 from laconic.tools.enclosure.series import Series, cross_of
 
 PIECES = 8  # of a step, for each of which the growth is bounded by itself

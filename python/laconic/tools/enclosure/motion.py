@@ -30,9 +30,8 @@ from laconic.tools.enclosure.balls import (
     widened,
 )
 from laconic.tools.enclosure.defect import Defects, Growth, Step, defects_of, growth_of
-from laconic.tools.enclosure.equation import Equation
+from laconic.tools.enclosure.equation import Equation, Forcing, Stretch, forcing_of
 from laconic.tools.enclosure.flow import Frame, carried, flow_of
-from laconic.tools.enclosure.loads import Forcing, Stretch, forcing_of
 from laconic.tools.enclosure.radii import Radii, radii_of
 from laconic.tools.enclosure.series import Rates, Series, Start, serves, slow_motion, step_for, taylor
 from laconic.tools.enclosure.state import Beginning, Sample, State, Taken

@@ -8,8 +8,7 @@ from flint import arb
 
 from laconic.tools.enclosure.balls import length, upper
 from laconic.tools.enclosure.defect import Defects, Growth, Step
-from laconic.tools.enclosure.equation import Equation
-from laconic.tools.enclosure.loads import Forcing
+from laconic.tools.enclosure.equation import Equation, Forcing
 from laconic.tools.enclosure.state import State
 
 

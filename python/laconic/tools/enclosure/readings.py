@@ -16,10 +16,10 @@ from laconic.scene import Scene
 from laconic.scene.ground import slips
 from laconic.scene.inputs import as_written
 from laconic.scene.keys import MOTOR_CIRCUITS
+from laconic.scene.scene import check_without_hinges
 from laconic.scene.table import entries_of
 from laconic.tools.enclosure.balls import ball, times
-from laconic.tools.enclosure.equation import angle, equation_of
-from laconic.tools.enclosure.loads import Stretch
+from laconic.tools.enclosure.equation import Stretch, angle, equation_of
 from laconic.tools.enclosure.motion import Motion
 from laconic.tools.enclosure.prepared import prepared_equation
 from laconic.tools.enclosure.state import Beginning
@@ -42,7 +42,8 @@ class Reading:
 
 
 def check_enclosable(scene: Scene) -> None:
-    """BadInput, by the key, for what has no smooth right-hand side or no held inputs."""
+    """BadInput, by the key, for what has no smooth right-hand side or no held inputs, and for hinges."""
+    check_without_hinges(scene, "an enclosure")
     vehicle = scene.vehicle
     switches = [f"vehicle.wheel[{i}].motor_circuit" for i, wheel in enumerate(vehicle["wheel"], start=1)
                 if wheel.get("motor_circuit")]

@@ -15,13 +15,11 @@ from laconic.core import Core
 from laconic.errors import Refused
 from laconic.scene.table import Table
 from laconic.tools.enclosure.balls import Vector, ball, times, widened
-from laconic.tools.enclosure.equation import Equation, equation_of, padded
-from laconic.tools.enclosure.loads import Stretch
+from laconic.tools.enclosure.equation import Equation, Stretch, equation_of, padded
 from laconic.tools.enclosure.motion import Motion
 from laconic.tools.enclosure.readings import Reading
 from laconic.tools.enclosure.state import Beginning, Sample
-from laconic.tools.enclosure.study import Enclosed, enclose
-from laconic.tools.enclosure.tables import kinds_json
+from laconic.tools.enclosure.study import Enclosed, enclose, kinds_json
 from laconic.tools.verify.enclosed_result import EnclosedResult
 from laconic.tools.verify.trajectories import follow, held_of, start_case
 

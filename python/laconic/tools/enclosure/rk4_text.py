@@ -1,6 +1,6 @@
 """The operations of a Runge-Kutta step with its inputs held, in the core's order, for any kind of number.
 
-With numpy's float32 it has the core's bits (a test compares them); with laconic.tools.enclosure.rounded it tells how
+With numpy's float32 it has the core's bits (a test compares them); with laconic.tools.enclosure.state it tells how
 far rounding can bring them from exact arithmetic.
 """
 

@@ -29,7 +29,7 @@ from laconic.tools.enclosure.rk4_text import (
     direction,
     rk4_step,
 )
-from laconic.tools.enclosure.rounded import Format, Rounded
+from laconic.tools.enclosure.state import Format, Rounded
 
 BITS = 100
 MARGIN = 1.05           # of the box, over what the run shows

@@ -5,8 +5,7 @@ from __future__ import annotations
 from laconic.scene import Scene
 from laconic.simulation import RunRefused, simulate
 from laconic.tools.enclosure.readings import check_enclosable
-from laconic.tools.enclosure.study import Study, state_signals, study_of
-from laconic.tools.enclosure.tables import kinds_json
+from laconic.tools.enclosure.study import Study, kinds_json, state_signals, study_of
 from laconic.tools.verify.enclosed_result import EnclosedResult
 
 

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from flint import arb, arb_poly, ctx
 
 from laconic.tools.enclosure.balls import Vector, cross, dot, larger, thin
-from laconic.tools.enclosure.equation import Equation
-from laconic.tools.enclosure.loads import Forcing
+from laconic.tools.enclosure.equation import Equation, Forcing
 
 MOST_ITERATIONS = 60
 

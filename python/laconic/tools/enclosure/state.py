@@ -4,12 +4,68 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
+import numpy as np
 from flint import arb, arb_poly
 
-from laconic.tools.enclosure.balls import Vector
+from laconic.tools.enclosure.balls import Vector, upper
 from laconic.tools.enclosure.defect import Step
 from laconic.tools.enclosure.flow import Frame
+
+# ---- A number as single or double precision computes it: the range of what exact arithmetic gives, and how far
+# rounding is from it at most. Every operation is rounded once, as the core's are.
+
+@dataclass(frozen=True)
+class Format:
+    """u = half a unit in the last place of 1, and what the smallest numbers round by."""
+
+    unit: arb
+    least: arb
+
+    @classmethod
+    def of(cls, real: str) -> Format:
+        info = np.finfo(np.float32 if real == "single" else np.float64)
+        return cls(arb(float(info.eps)) / 2, arb(float(info.smallest_subnormal)))
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """`exact`: a ball with all that exact arithmetic can give; `off`: a bound of |computed − exact|."""
+
+    exact: arb
+    off: arb
+    format: Format
+
+    def _of(self, other: Any) -> Rounded:
+        return other if isinstance(other, Rounded) else Rounded(arb(float(other)), arb(0), self.format)
+
+    def _once(self, exact: arb, off: arb, tiny: bool) -> Rounded:
+        """With the operation's own rounding; sums of floats do not underflow."""
+        own = self.format.unit * (upper(exact) + off) + (self.format.least if tiny else arb(0))
+        return Rounded(exact, upper(off + own), self.format)
+
+    def __add__(self, other: Any) -> Rounded:
+        b = self._of(other)
+        return self._once(self.exact + b.exact, self.off + b.off, tiny=False)
+
+    def __sub__(self, other: Any) -> Rounded:
+        b = self._of(other)
+        return self._once(self.exact - b.exact, self.off + b.off, tiny=False)
+
+    def __rsub__(self, other: Any) -> Rounded:
+        return self._of(other) - self
+
+    def __mul__(self, other: Any) -> Rounded:
+        b = self._of(other)
+        off = upper(self.exact) * b.off + upper(b.exact) * self.off + self.off * b.off
+        return self._once(self.exact * b.exact, off, tiny=True)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def with_more(self, off: arb) -> Rounded:
+        """Further off by so much."""
+        return Rounded(self.exact, upper(self.off + off), self.format)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from laconic.tools.measures.registry import measures_of as measures_of_kind
 from laconic.tools.optimise.candidates import Candidates
 from laconic.tools.optimise.gradient import RunGradient
 from laconic.tools.optimise.problem import Constraint, Free, Goal, Problem, measures_of
-from laconic.tools.optimise.runs import Runs
+from laconic.tools.optimise.search import Runs
 
 OF_TIME = ("run.duration_s", "run.step_s")
 

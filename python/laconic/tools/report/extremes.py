@@ -17,7 +17,7 @@ from laconic.core.plant import Plant
 from laconic.errors import LaconicError, Refused
 from laconic.scene import Scene, read_scene
 from laconic.scene.methods import STIFF_8
-from laconic.tools.report.exact_reference import exact_states
+from laconic.tools.report.referenced import exact_states
 
 STEP_S, STEPS, LONG_STEPS = 0.01, 100, 10
 METHODS = ("auto", STIFF_8)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import ctypes
+import time
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,9 +15,40 @@ from laconic.scene import METHODS, Scene
 from laconic.tools.report import peers
 from laconic.tools.report.accuracy import Truth, fits, follow
 from laconic.tools.report.counting import cachegrind_present, host_instructions
-from laconic.tools.report.timing import Contestant, bench_contestant, race
 from laconic.tools.report.workshop import Variant, Workshop
 from laconic.tools.verify.reference import reference_states
+
+# ---- Wall-clock figures: thread CPU time, minimum over repetitions, all sides interleaved in one run.
+
+Contestant = Callable[[], float]
+Key = TypeVar("Key")
+
+
+def race(contestants: Mapping[Key, Contestant], repetitions: int) -> dict[Key, float]:
+    """Least seconds of each: every round runs all of them once, so a slow moment of the machine hits all."""
+    best = dict.fromkeys(contestants, float("inf"))
+    for _ in range(repetitions):
+        for name, run in contestants.items():
+            best[name] = min(best[name], run())
+    return best
+
+
+def bench_contestant(library: Path, steps: int) -> Contestant:
+    """Seconds for `steps` steps of a bench library (workshop.host_library)."""
+    bench = ctypes.CDLL(str(library))
+    bench.bench_run.argtypes, bench.bench_run.restype = [ctypes.c_uint32], ctypes.c_int
+    bench.bench_reset()
+
+    def run() -> float:
+        start = time.thread_time_ns()
+        status = bench.bench_run(steps)
+        seconds = (time.thread_time_ns() - start) * 1e-9
+        if status != 0:
+            raise RuntimeError(f"{library.name}: a step was refused (status {status})")
+        return seconds
+
+    return run
+
 
 STEP_S, RACE_STEPS, ROUNDS = 0.01, 20_000, 60
 LADDER_S = tuple(0.5 / n for n in (500, 250, 100, 50, 40, 32, 25, 20, 16, 12, 10, 8, 7, 6, 5, 4, 3, 2))

@@ -15,8 +15,7 @@ from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
 from laconic.scene.inputs import Input
 from laconic.tools.report.accuracy import follow, relative
-from laconic.tools.report.exact_reference import exact_states
-from laconic.tools.report.stiff_reference import stiff_states
+from laconic.tools.report.referenced import exact_states, stiff_states
 from laconic.tools.verify.reference import Reference, totals_of
 
 SEGMENT_S, SEGMENTS = 0.25, 4

@@ -11,7 +11,7 @@ from laconic.errors import BadInput
 from laconic.scene import read_scene
 from laconic.scene.methods import EXPLICIT
 from laconic.tools.report.counting import cachegrind_present, host_instructions, host_state
-from laconic.tools.report.timing import bench_contestant, race
+from laconic.tools.report.speed import bench_contestant, race
 from laconic.tools.report.workshop import HOST, Variant, Workshop
 
 STEP_S, STEPS = 0.01, 20_000

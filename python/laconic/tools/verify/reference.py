@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.errors import BadInput
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
 
@@ -79,6 +80,8 @@ class Reference:
     J, c1 and c2 are diagonal, with each wheel's value."""
 
     def __init__(self, vehicle: Mapping[str, Any]):
+        if vehicle.get("body"):
+            raise BadInput("vehicle.body: this reference does not take vehicles with hinges; use laconic verify")
         self.totals = totals_of(vehicle)
         self.wheels = vehicle["wheel"]
         t = self.totals

@@ -1,0 +1,337 @@
+/* The vehicle with hinges as an FMU model: starts, changes and steps the core's articulated vehicle. */
+#include <string.h>
+
+#include "core_words.h"
+#include "parts.h"
+
+/* Internal steps between two looks at whether the importer cancels them: well below a second. */
+#define SLICE_STEPS 256U
+
+/* These do not compile unless the core computes in double and kinds can be read as an int32_t. */
+typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
+typedef char fmu_kinds_are_int32
+    [sizeof(laconic_hinge_kind) == sizeof(int32_t) && sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
+
+static laconic_refusal no_refusal(void) {
+    const laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    return why;
+}
+
+void fmu_model_made(fmu_model *model) { (void)model; /* all vehicles have the same states */ }
+
+/* ------------------------------------------------------------------------------------- start -- */
+
+/* Without step_s, Co-Simulation knows its internal step only at its first communication step, Model Exchange never. */
+static laconic_status prepare(fmu_model *self, laconic_refusal *why) {
+    const bool knows_step = self->step_s != 0.0 && !self->continuous;
+    const laconic_status status = laconic_articulated_prepare(&self->prepared, &self->vehicle, why);
+    if (status != LACONIC_OK || !knows_step) return status;
+    return laconic_articulated_integrator_prepare(&self->integrator, self->method, &self->prepared, self->step_s, why);
+}
+
+static void mark_as_started(fmu_model *self) {
+    self->in_use = self->vehicle;
+    self->commanded = self->input;
+    self->start_needed = self->change_needed = self->jump_needed = false;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+}
+
+fmu_status fmu_model_start(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    laconic_refusal why = no_refusal();
+    double change_m_per_s;
+    self->continuous = instance->kind == FMU_MODEL_EXCHANGE;
+    laconic_status status = prepare(self, &why);
+    if (status == LACONIC_OK) status = fmu_articulated_start(self, &change_m_per_s, &why);
+    if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "this vehicle cannot start");
+    if (fmu_articulated_check_start(instance, change_m_per_s) != FMU_OK) return FMU_ERROR;
+    mark_as_started(self);
+    fmu_articulated_check_idle(instance);
+    if (self->continuous) fmu_model_refresh(instance, FMU_GROUP_PLACE);
+    return FMU_OK;
+}
+
+/* ------------------------------------------------------------------------------------ changes -- */
+
+/* Where the body frame's origin is, and how fast: both stay when a payload moves the centre of mass. */
+static void carry_over(laconic_articulated_start *start, fmu_model *self, const laconic_articulated_model *fresh) {
+    const laconic_articulated_motion *m = &self->motion;
+    const double dx = fresh->com_x_m - self->prepared.com_x_m, dy = fresh->com_y_m - self->prepared.com_y_m;
+    double moved[2];
+    fmu_articulated_turn(moved, &self->state.heading, dx, dy);
+    start->velocity_m_per_s[0] = m->velocity_m_per_s[0] - m->yaw_rate_rad_per_s * dy;
+    start->velocity_m_per_s[1] = m->velocity_m_per_s[1] + m->yaw_rate_rad_per_s * dx;
+    start->yaw_rate_rad_per_s = m->yaw_rate_rad_per_s;
+    start->x_m = m->x_m + moved[0];
+    start->y_m = m->y_m + moved[1];
+    start->heading_rad = m->heading_rad;
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) {
+        start->hinge_angle_rad[b] = b < fresh->body_count ? m->hinge_angle_rad[b] : 0.0;
+        start->hinge_rate_rad_per_s[b] = b < fresh->body_count ? m->hinge_rate_rad_per_s[b] : 0.0;
+    }
+}
+
+static laconic_status change_vehicle(fmu_model *self, laconic_refusal *why) {
+    laconic_articulated_model fresh;
+    laconic_articulated_integrator integrator = self->integrator;
+    laconic_articulated_state state;
+    laconic_articulated_start start;
+    laconic_status status = laconic_articulated_prepare(&fresh, &self->vehicle, why);
+    if (status == LACONIC_OK && integrator.step_s > 0.0)
+        status = laconic_articulated_integrator_prepare(&integrator, self->method, &fresh, integrator.step_s, why);
+    if (status != LACONIC_OK) return status;
+    laconic_articulated_motion_of(&self->motion, &self->prepared, &self->state);
+    carry_over(&start, self, &fresh);
+    status = laconic_articulated_state_set(&state, NULL, &fresh, &start, &self->commanded, why);
+    if (status != LACONIC_OK) return status;
+    laconic_articulated_wheel_angles_set(&fresh, &state, self->motion.wheel_angle_rad);
+    self->state = state;
+    self->prepared = fresh;
+    self->integrator = integrator;
+    self->in_use = self->vehicle;
+    return LACONIC_OK;
+}
+
+/* In Model Exchange commands that were set in event mode jump; the momenta along the allowed motions are kept. */
+static laconic_status jump(fmu_model *self, laconic_refusal *why) {
+    const laconic_status status = laconic_articulated_jump(&self->prepared, &self->state, &self->input, why);
+    if (status == LACONIC_OK) self->commanded = self->input;
+    return status;
+}
+
+fmu_status fmu_model_change(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    laconic_refusal why = no_refusal();
+    laconic_status status = LACONIC_OK;
+    const bool changes = memcmp(&self->vehicle, &self->in_use, sizeof self->vehicle) != 0;
+    if (self->stale & FMU_GROUP_STATE) status = fmu_articulated_take_state(self, &self->commanded, &why);
+    if (status == LACONIC_OK && changes) status = change_vehicle(self, &why);
+    if (status == LACONIC_OK && self->jump_needed) status = jump(self, &why);
+    if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "the change is refused");
+    self->change_needed = self->jump_needed = false;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    if (self->continuous) fmu_model_refresh(instance, FMU_GROUP_PLACE);
+    if (!changes) return FMU_OK;
+    return fmu_log(instance, FMU_OK, FMU_LOG_EVENTS,
+                   "the vehicle changed: mass of the carriage %g kg, its body keeps velocity and position",
+                   self->prepared.mass_kg);
+}
+
+static bool commands_differ(const laconic_articulated_input *a, const laconic_articulated_input *b) {
+    bool differ = false;
+    for (int k = 0; k < LACONIC_MAX_BODIES; k++)
+        differ = differ || a->hinge_rate_rad_per_s[k] != b->hinge_rate_rad_per_s[k];
+    for (int k = 0; k < 3; k++) differ = differ || a->twist[k] != b->twist[k] || a->twist_rate[k] != b->twist_rate[k];
+    return differ;
+}
+
+/* Commands of the initialization are those of the start. In Co-Simulation a step sees by itself that they jump. */
+void fmu_model_input_changed(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    if (instance->mode <= FMU_INITIALIZATION) {
+        self->start_needed = true;
+        return;
+    }
+    self->stale |= FMU_GROUPS_OF_INPUT;
+    fmu_articulated_check_idle(instance);
+    if (!self->continuous || !commands_differ(&self->input, &self->commanded)) return;
+    if (instance->mode == FMU_EVENT)
+        self->change_needed = self->jump_needed = true;
+    else
+        self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_PLACE; /* the same continuous states are another motion */
+}
+
+/* ------------------------------------------------------------------------------------ outputs -- */
+
+static void fill(void *numbers, size_t size, double value) {
+    for (size_t k = 0; k < size / sizeof value; k++) ((double *)numbers)[k] = value;
+}
+
+/* Where a posture has no motion, outputs are no numbers, and reading them is refused. */
+static void show_nothing(fmu_instance *instance, const laconic_refusal *why, uint32_t groups) {
+    fmu_model *self = &instance->model;
+    const double zero = 0.0, nan = zero / zero;
+    (void)fmu_refuse_with(instance, why, "this posture has no motion");
+    if (groups & FMU_GROUP_RATES) fill(&self->rate, sizeof self->rate, nan);
+    if (groups & FMU_GROUP_GROUND) fill(&self->ground, sizeof self->ground, nan);
+    if (groups & FMU_GROUP_STATE) fill(&self->motion, sizeof self->motion, nan);
+}
+
+static void refresh_motion(fmu_model *self) {
+    const laconic_articulated_model *m = &self->prepared;
+    laconic_articulated_motion *motion = &self->motion;
+    double from_origin[2];
+    laconic_articulated_motion_of(motion, m, &self->state);
+    fmu_articulated_turn(from_origin, &self->state.heading, m->com_x_m, m->com_y_m);
+    self->origin_m[0] = motion->x_m - from_origin[0];
+    self->origin_m[1] = motion->y_m - from_origin[1];
+    self->heading_wrapped_rad = laconic_angle_wrapped(motion->heading_rad);
+}
+
+static laconic_status refresh_ground(fmu_model *self, laconic_refusal *why) {
+    laconic_articulated_reactions *r = &self->ground;
+    fmu_articulated_loads(self);
+    const laconic_status status =
+        laconic_articulated_reactions_of(r, &self->prepared, &self->state, &self->input, self->wheel_load_N, why);
+    for (int32_t b = 0; status == LACONIC_OK && b < self->prepared.body_count; b++) {
+        self->hinge_force_along_N[b] = r->hinge_force_N[b][0];
+        self->hinge_force_across_N[b] = r->hinge_force_N[b][1];
+    }
+    return status;
+}
+
+static laconic_status refresh_rates(fmu_model *self, laconic_refusal *why) {
+    const laconic_articulated_model *m = &self->prepared;
+    const laconic_articulated_motion *motion = &self->motion;
+    laconic_articulated_rates rates;
+    double velocity[2];
+    const laconic_status status = laconic_articulated_rates_of(&rates, m, &self->state, &self->input, why);
+    if (status != LACONIC_OK) return status;
+    refresh_motion(self);
+    fmu_articulated_turn(velocity, &self->state.heading, motion->velocity_m_per_s[0], motion->velocity_m_per_s[1]);
+    self->rate.x_m = velocity[0];
+    self->rate.y_m = velocity[1];
+    self->rate.heading_rad = motion->yaw_rate_rad_per_s;
+    for (int32_t k = 0; k < 3; k++) self->rate.zeta[k] = k < m->carriage_dof ? rates.eta_rate[k] : 0.0;
+    for (int32_t b = 0; b < m->body_count; b++) {
+        const bool is_own = m->link[b].motion == LACONIC_MOTION_OWN;
+        self->rate.hinge_rad[b] = motion->hinge_rate_rad_per_s[b];
+        self->rate.own[b] = is_own ? rates.eta_rate[m->carriage_dof + m->link[b].column] : 0.0;
+    }
+    for (int32_t i = 0; i < m->wheel_count; i++) self->rate.wheel_angle_rad[i] = motion->wheel_speed_rad_per_s[i];
+    return LACONIC_OK;
+}
+
+void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
+    fmu_model *self = &instance->model;
+    laconic_refusal why = no_refusal();
+    laconic_status status = LACONIC_OK;
+    groups &= self->stale;
+    if (groups == 0) return;
+    if (self->stale & FMU_GROUP_STATE) {
+        status = fmu_articulated_take_state(self, &self->input, &why);
+        self->commanded = self->input;
+        groups |= FMU_GROUP_STATE;
+    }
+    if (groups & FMU_GROUP_PLACE) fmu_articulated_show_state(self);
+    if (groups & FMU_GROUP_MOTION) refresh_motion(self);
+    if (status == LACONIC_OK && groups & FMU_GROUP_GROUND) status = refresh_ground(self, &why);
+    if (status == LACONIC_OK && groups & FMU_GROUP_RATES) status = refresh_rates(self, &why);
+    if (status != LACONIC_OK) show_nothing(instance, &why, groups);
+    self->stale &= ~groups;
+}
+
+/* -------------------------------------------------------------------------------------- steps -- */
+
+double fmu_model_own_step(const fmu_model *model) { return model->step_s; }
+
+fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
+    fmu_model *self = &instance->model;
+    laconic_articulated_integrator integrator;
+    laconic_refusal why = no_refusal();
+    if (laconic_articulated_integrator_prepare(&integrator, self->method, &self->prepared, step_s, &why) != LACONIC_OK)
+        return fmu_discard_with(instance, &why);
+    self->integrator = integrator;
+    return FMU_OK;
+}
+
+static bool any_is_not_0(const double *numbers, size_t count) {
+    bool found = false;
+    for (size_t k = 0; k < count; k++) found = found || numbers[k] != 0.0;
+    return found;
+}
+
+static bool input_moves(const fmu_model *self) {
+    const laconic_articulated_input *u = &self->input;
+    return any_is_not_0(u->hinge_acceleration_rad_per_s2, LACONIC_MAX_BODIES) || any_is_not_0(u->twist_rate, 3) ||
+           any_is_not_0((const double *)&self->slope, sizeof self->slope / sizeof(double));
+}
+
+typedef char fmu_input_is_all_doubles[sizeof(laconic_articulated_input) % sizeof(double) == 0 ? 1 : -1];
+
+/* The input `by_s` later: FMI 2's slopes, and the derivatives of rates and twist. */
+static void shift_input(laconic_articulated_input *out, const fmu_model *self, double by_s) {
+    const double *u = (const double *)&self->input, *du = (const double *)&self->slope;
+    double *shifted = (double *)out;
+    for (size_t k = 0; k < sizeof *out / sizeof(double); k++) shifted[k] = u[k] + by_s * du[k];
+    for (int b = 0; b < LACONIC_MAX_BODIES; b++) {
+        out->hinge_rate_rad_per_s[b] += by_s * self->input.hinge_acceleration_rad_per_s2[b];
+        out->hinge_acceleration_rad_per_s2[b] += self->slope.hinge_rate_rad_per_s[b];
+    }
+    for (int k = 0; k < 3; k++) {
+        out->twist[k] += by_s * self->input.twist_rate[k];
+        out->twist_rate[k] += self->slope.twist[k];
+    }
+}
+
+static laconic_status step(fmu_model *self, const laconic_articulated_input *from, const laconic_articulated_input *to,
+                           laconic_refusal *why) {
+    return laconic_articulated_step(&self->prepared, &self->integrator, &self->state, from, to, why);
+}
+
+/* `slope` holds for one communication step; the derivatives of rates and twist stay as they were set. */
+static void end_at(fmu_model *self, const laconic_articulated_input *reached) {
+    const laconic_articulated_input none = {0}, before = self->input;
+    self->input = *reached;
+    for (int b = 0; b < LACONIC_MAX_BODIES; b++)
+        self->input.hinge_acceleration_rad_per_s2[b] = before.hinge_acceleration_rad_per_s2[b];
+    for (int k = 0; k < 3; k++) self->input.twist_rate[k] = before.twist_rate[k];
+    self->slope = none;
+}
+
+static laconic_status run_moving(fmu_instance *instance, uint64_t steps, uint64_t *taken, laconic_refusal *why) {
+    fmu_model *self = &instance->model;
+    const double h = self->integrator.step_s;
+    laconic_articulated_input from, to;
+    shift_input(&from, self, 0.0);
+    for (*taken = 0; *taken < steps && !instance->cancelled; ++*taken) {
+        shift_input(&to, self, (double)(*taken + 1) * h);
+        const laconic_status status = step(self, &from, &to, why);
+        if (status != LACONIC_OK) return status;
+        from = to;
+    }
+    end_at(self, &from);
+    return LACONIC_OK;
+}
+
+static laconic_status run_held(fmu_instance *instance, uint64_t steps, uint64_t *taken, laconic_refusal *why) {
+    fmu_model *self = &instance->model;
+    laconic_status status = LACONIC_OK;
+    *taken = 0;
+    while (*taken < steps && (*taken % SLICE_STEPS != 0 || !instance->cancelled)) {
+        status = step(self, &self->input, &self->input, why);
+        if (status != LACONIC_OK) break;
+        ++*taken;
+    }
+    return status;
+}
+
+fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
+    fmu_model *self = &instance->model;
+    laconic_refusal why = no_refusal();
+    const laconic_status status =
+        input_moves(self) ? run_moving(instance, steps, taken, &why) : run_held(instance, steps, taken, &why);
+    self->commanded = self->input;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    return status == LACONIC_OK ? FMU_OK : fmu_discard_with(instance, &why);
+}
+
+void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
+    (void)instance;
+    (void)accepted; /* steps of such a vehicle have no warnings */
+}
+
+void fmu_model_completed_step(fmu_instance *instance) { (void)instance; }
+
+void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
+    motion->state = model->state;
+    motion->input = model->input;
+    motion->slope = model->slope;
+}
+
+void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
+    model->state = motion->state;
+    model->input = motion->input;
+    model->slope = motion->slope;
+    model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+}

@@ -1,0 +1,31 @@
+/* Parts of the FMU of a vehicle with hinges. */
+#ifndef LACONIC_FMU_ARTICULATED_PARTS_H
+#define LACONIC_FMU_ARTICULATED_PARTS_H
+
+#include "model_interface.h"
+
+/* (x, y) turned by a heading. */
+void fmu_articulated_turn(double turned[2], const laconic_heading *heading, double x, double y);
+
+/* The core's state at the start values; writes how far the wheels changed them. Refuses as
+ * laconic_articulated_state_set. */
+laconic_status fmu_articulated_start(fmu_model *self, double *change_m_per_s, laconic_refusal *why);
+
+/* Refuses a start that makes a fixed wheel slide, with the nearest one. */
+fmu_status fmu_articulated_check_start(const fmu_instance *instance, double change_m_per_s);
+
+/* The continuous states of the core's state, and the core's state of them. The second refuses as
+ * laconic_articulated_state_set. */
+void fmu_articulated_show_state(fmu_model *self);
+laconic_status fmu_articulated_take_state(fmu_model *self, const laconic_articulated_input *input,
+                                          laconic_refusal *why);
+
+/* Warns of an input that is not 0 and has no effect on this vehicle. */
+void fmu_articulated_check_idle(fmu_instance *instance);
+
+/* The load of each wheel and support, as the vehicle would stand still in its posture on level ground. A vertical hinge
+ * carries weight and tipping moments, so that bodies on hinges stand as one with their parents; a ball (hinge_is_ball)
+ * carries weight alone. */
+void fmu_articulated_loads(fmu_model *self);
+
+#endif

@@ -1,0 +1,127 @@
+/* All members of the fmu_model of a vehicle with hinges to and from bytes. Prepared constants are not stored but
+ * prepared again, which gives the same bits. */
+#include "parts.h"
+
+#define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+    fmu_stream_reals(s, (double *)&(of).member, sizeof(of).member / sizeof(double));
+#define SERIALIZE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).member);
+#define SERIALIZE_OWN(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).own_##member);
+#define SERIALIZE_REAL(stream, number) fmu_stream_reals(stream, number, 1)
+#define SERIALIZE_INTEGER(stream, number) serialize_integer(stream, (int32_t *)(number))
+#define SERIALIZE_ABSENCE(stream, flag) fmu_stream_bool(stream, flag)
+#define SERIALIZE_FLAG(stream, flag) fmu_stream_bool(stream, flag)
+#define SERIALIZE_WHEEL_KIND(stream, kind) serialize_integer(stream, (int32_t *)(kind)) /* model.c checks its size */
+
+static void serialize_integer(fmu_stream *s, int32_t *number) { fmu_stream_i32(s, number, INT32_MIN, INT32_MAX); }
+
+static void serialize_vehicle(fmu_stream *s, laconic_articulated_vehicle *v) {
+    laconic_vehicle *base = &v->base;
+    LACONIC_VEHICLE_FIELDS(SERIALIZE, *base)
+    LACONIC_PAYLOAD_FIELDS(SERIALIZE, base->payload)
+    LACONIC_GROUND_FIELDS(SERIALIZE, base->ground)
+    fmu_stream_i32(s, &base->wheel_count, 0, LACONIC_MAX_WHEELS);
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        LACONIC_WHEEL_FIELDS(SERIALIZE, base->wheel[i])
+        LACONIC_OWN_WHEEL_FIELDS(SERIALIZE_OWN, base->wheel[i])
+        serialize_integer(s, &v->wheel_body[i]);
+    }
+    serialize_integer(s, &base->support_count);
+    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
+        LACONIC_SUPPORT_FIELDS(SERIALIZE, base->support[i])
+    }
+    fmu_stream_i32(s, &v->body_count, 0, LACONIC_MAX_BODIES);
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) {
+        LACONIC_BODY_FIELDS(SERIALIZE, v->body[b])
+    }
+}
+
+static void serialize_start(fmu_stream *s, laconic_articulated_start *start) {
+    LACONIC_START_FIELDS(SERIALIZE, *start)
+    LACONIC_HINGE_START_FIELDS(SERIALIZE_ARRAY, *start)
+}
+
+static void serialize_input(fmu_stream *s, laconic_articulated_input *u) {
+    LACONIC_INPUT_ARRAY_FIELDS(SERIALIZE_ARRAY, u->base)
+    LACONIC_INPUT_FIELDS(SERIALIZE, u->base)
+    LACONIC_HINGE_INPUT_FIELDS(SERIALIZE_ARRAY, *u)
+}
+
+static void serialize_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
+    for (size_t k = 0; k < count; k++) {
+        fmu_stream_reals(s, &sums[k].value, 1);
+        fmu_stream_reals(s, &sums[k].rest, 1);
+    }
+}
+
+/* What a heading has not taken up is at most 1; not so NaN. */
+static void serialize_heading(fmu_stream *s, laconic_heading *heading) {
+    uint64_t fraction = heading->fraction;
+    fmu_stream_i64(s, &heading->turns);
+    fmu_stream_u64(s, &fraction);
+    heading->fraction = fraction;
+    fmu_stream_reals(s, &heading->rest, 1);
+    if (s->from != NULL && !(heading->rest <= 1.0 && heading->rest >= -1.0)) s->failed = true;
+}
+
+static void serialize_state(fmu_stream *s, laconic_articulated_state *state) {
+    serialize_sums(s, state->eta, LACONIC_MAX_VELOCITIES);
+    serialize_sums(s, &state->x_m, 1);
+    serialize_sums(s, &state->y_m, 1);
+    serialize_heading(s, &state->heading);
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) serialize_heading(s, &state->hinge[b]);
+    serialize_sums(s, &state->travel[0][0], 3 * (LACONIC_MAX_BODIES + 1));
+    fmu_stream_reals(s, state->wheel_angle_set_rad, LACONIC_MAX_WHEELS);
+    fmu_stream_reals(s, state->hinge_rate_rad_per_s, LACONIC_MAX_BODIES);
+    fmu_stream_reals(s, &state->twist.x, sizeof state->twist / sizeof(double));
+    fmu_stream_reals(s, &state->twist_rate.x, sizeof state->twist_rate / sizeof(double));
+}
+
+/* After reading, outputs are stale. In Model Exchange the continuous states are not: they are stored, and `follows`
+ * states whether the core's state must still be computed from them. */
+static void serialize_stale(fmu_stream *s, fmu_model *self) {
+    bool follows = (self->stale & FMU_GROUP_STATE) != 0;
+    fmu_stream_bool(s, &follows);
+    if (s->from == NULL) return;
+    if (follows && !self->continuous) s->failed = true;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    if (self->continuous) self->stale &= ~FMU_GROUP_PLACE;
+    if (follows) self->stale |= FMU_GROUP_STATE;
+}
+
+/* Prepares model and integrator from the vehicle and the step that were in use. */
+static void prepare_again(fmu_stream *s, fmu_model *self, double step_s) {
+    if (s->from == NULL || s->failed || self->start_needed) return;
+    if (self->in_use.base.wheel_count != self->vehicle.base.wheel_count ||
+        self->in_use.body_count != self->vehicle.body_count ||
+        laconic_articulated_prepare(&self->prepared, &self->in_use, NULL) != LACONIC_OK)
+        s->failed = true;
+    if (s->failed || step_s == 0.0) return;
+    if (laconic_articulated_integrator_prepare(&self->integrator, self->method, &self->prepared, step_s, NULL) !=
+        LACONIC_OK)
+        s->failed = true;
+}
+
+bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
+    double step_s = model->integrator.step_s;
+    fmu_stream_bool(stream, &model->start_needed);
+    fmu_stream_bool(stream, &model->change_needed);
+    fmu_stream_bool(stream, &model->states_changed);
+    fmu_stream_bool(stream, &model->continuous);
+    fmu_stream_bool(stream, &model->jump_needed);
+    fmu_stream_reals(stream, &model->time_s, 1);
+    serialize_vehicle(stream, &model->vehicle);
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) fmu_stream_bool(stream, &model->hinge_is_ball[b]);
+    serialize_start(stream, &model->start);
+    serialize_integer(stream, &model->method);
+    fmu_stream_reals(stream, &model->step_s, 1);
+    serialize_input(stream, &model->input);
+    serialize_input(stream, &model->slope);
+    serialize_stale(stream, model);
+    fmu_stream_reals(stream, &model->at.x_m, sizeof model->at / sizeof(double));
+    serialize_vehicle(stream, &model->in_use);
+    serialize_state(stream, &model->state);
+    serialize_input(stream, &model->commanded);
+    fmu_stream_reals(stream, &step_s, 1);
+    prepare_again(stream, model, step_s);
+    return !stream->failed;
+}

@@ -1,0 +1,130 @@
+/* The state of a vehicle with hinges: from start values, from the continuous states of Model Exchange, and back. */
+#include "parts.h"
+
+/* Of the size of a start, what rounding may change of it. */
+#define ALLOWED_CHANGE 1e-9
+
+void fmu_articulated_turn(double turned[2], const laconic_heading *heading, double x, double y) {
+    laconic_model model = {0};
+    laconic_state state = {0};
+    laconic_pose pose;
+    model.com_x_m = -x;
+    model.com_y_m = -y;
+    state.heading = *heading;
+    laconic_pose_of(&pose, &model, &state);
+    turned[0] = pose.origin_x_m;
+    turned[1] = pose.origin_y_m;
+}
+
+/* ------------------------------------------------------------------------------------ starts -- */
+
+/* Twist of a body's origin, seen by the body, at the angle of its hinge. */
+static laconic_vector carried_to(const laconic_link *link, const laconic_heading *hinge, laconic_vector parent) {
+    laconic_heading back = *hinge;
+    laconic_vector at = {0.0, 0.0, parent.z};
+    double turned[2];
+    back.fraction = (laconic_binary_angle)(0U - hinge->fraction);
+    fmu_articulated_turn(turned, &back, parent.x - parent.z * link->hinge.y, parent.y + parent.z * link->hinge.x);
+    at.x = turned[0];
+    at.y = turned[1];
+    return at;
+}
+
+/* Rates of hinges behind which wheels roll, as these wheels ask for them; the others as they are given. */
+static void find_rolling_rates(laconic_articulated_start *start, const laconic_articulated_model *m,
+                               const laconic_articulated_state *posture) {
+    laconic_vector twist[LACONIC_MAX_BODIES + 1] = {
+        {start->velocity_m_per_s[0], start->velocity_m_per_s[1], start->yaw_rate_rad_per_s}};
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        const laconic_link *link = &m->link[b - 1];
+        const laconic_vector parent = twist[link->parent];
+        laconic_vector *own = &twist[b];
+        *own = carried_to(link, &posture->hinge[b - 1], parent);
+        if (link->motion == LACONIC_MOTION_FOLLOWING)
+            own->z = -(link->axle_per_lever.x * own->x + link->axle_per_lever.y * own->y);
+        else
+            own->z += link->motion == LACONIC_MOTION_OWN ? start->hinge_rate_rad_per_s[b - 1]
+                                                         : posture->hinge_rate_rad_per_s[b - 1];
+        start->hinge_rate_rad_per_s[b - 1] = own->z - parent.z;
+    }
+}
+
+static laconic_articulated_start standing(const laconic_articulated_start *start) {
+    laconic_articulated_start still = *start;
+    still.velocity_m_per_s[0] = still.velocity_m_per_s[1] = still.yaw_rate_rad_per_s = 0.0;
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) still.hinge_rate_rad_per_s[b] = 0.0;
+    return still;
+}
+
+laconic_status fmu_articulated_start(fmu_model *self, double *change_m_per_s, laconic_refusal *why) {
+    laconic_articulated_start start = standing(&self->start);
+    laconic_status status =
+        laconic_articulated_state_set(&self->state, change_m_per_s, &self->prepared, &start, &self->input, why);
+    if (status != LACONIC_OK) return status;
+    start = self->start;
+    find_rolling_rates(&start, &self->prepared, &self->state);
+    return laconic_articulated_state_set(&self->state, change_m_per_s, &self->prepared, &start, &self->input, why);
+}
+
+fmu_status fmu_articulated_check_start(const fmu_instance *instance, double change_m_per_s) {
+    const fmu_model *self = &instance->model;
+    const double *v = self->start.velocity_m_per_s, yaw = self->start.yaw_rate_rad_per_s;
+    const double square_size = 1.0 + v[0] * v[0] + v[1] * v[1] + yaw * yaw;
+    laconic_articulated_motion nearest;
+    if (change_m_per_s * change_m_per_s <= ALLOWED_CHANGE * ALLOWED_CHANGE * square_size) return FMU_OK;
+    laconic_articulated_motion_of(&nearest, &self->prepared, &self->state);
+    return fmu_refuse(
+        instance,
+        "start_velocity_m_per_s: this start makes a fixed wheel slide; the nearest motion that all wheels "
+        "allow is %.6g, %.6g m/s with start_yaw_rate_rad_per_s %.6g",
+        nearest.velocity_m_per_s[0], nearest.velocity_m_per_s[1], nearest.yaw_rate_rad_per_s);
+}
+
+/* ------------------------------------------------------------------------- continuous states -- */
+
+static bool is_own(const fmu_model *self, int32_t b) { return self->prepared.link[b].motion == LACONIC_MOTION_OWN; }
+
+static laconic_sum *own_velocity(fmu_model *self, int32_t b) {
+    return &self->state.eta[self->prepared.carriage_dof + self->prepared.link[b].column];
+}
+
+void fmu_articulated_show_state(fmu_model *self) {
+    const laconic_articulated_motion *m = &self->motion;
+    fmu_moving *at = &self->at;
+    laconic_articulated_motion_of(&self->motion, &self->prepared, &self->state);
+    at->x_m = m->x_m;
+    at->y_m = m->y_m;
+    at->heading_rad = m->heading_rad;
+    for (int32_t k = 0; k < 3; k++) at->zeta[k] = k < self->prepared.carriage_dof ? self->state.eta[k].value : 0.0;
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) {
+        const bool there = b < self->prepared.body_count;
+        at->hinge_rad[b] = there ? m->hinge_angle_rad[b] : 0.0;
+        at->own[b] = there && is_own(self, b) ? own_velocity(self, b)->value : 0.0;
+    }
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++)
+        at->wheel_angle_rad[i] = i < self->prepared.wheel_count ? m->wheel_angle_rad[i] : 0.0;
+}
+
+laconic_status fmu_articulated_take_state(fmu_model *self, const laconic_articulated_input *input,
+                                          laconic_refusal *why) {
+    const fmu_moving *at = &self->at;
+    laconic_articulated_start start = standing(&self->start);
+    start.x_m = at->x_m;
+    start.y_m = at->y_m;
+    start.heading_rad = at->heading_rad;
+    for (int32_t b = 0; b < self->prepared.body_count; b++) start.hinge_angle_rad[b] = at->hinge_rad[b];
+    const laconic_status status =
+        laconic_articulated_state_set(&self->state, NULL, &self->prepared, &start, input, why);
+    if (status != LACONIC_OK) return status;
+    for (int32_t k = 0; k < self->prepared.carriage_dof; k++) {
+        self->state.eta[k].value = at->zeta[k];
+        self->state.eta[k].rest = 0.0;
+    }
+    for (int32_t b = 0; b < self->prepared.body_count; b++) {
+        if (!is_own(self, b)) continue;
+        own_velocity(self, b)->value = at->own[b];
+        own_velocity(self, b)->rest = 0.0;
+    }
+    laconic_articulated_wheel_angles_set(&self->prepared, &self->state, at->wheel_angle_rad);
+    return LACONIC_OK;
+}

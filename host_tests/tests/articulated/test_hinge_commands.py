@@ -1,0 +1,220 @@
+"""What people see of vehicles with hinges on the command line, and that no other command ignores the hinges."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from hinge_scenes import CASTER, HINGED, held, scene_with, tables_of, two_wheels
+
+import laconic
+from laconic.base.paths import SCENE_DIR, SOURCE_DIR
+from laconic.cli.main import run
+from laconic.errors import BadInput
+from laconic.scene.scene_text import lines_of
+
+REFERENCE = Path(__file__).parents[1] / "data" / "articulated_reference.json"
+DOES_NOT = "does not take vehicles with hinges"
+
+
+def told(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    capsys.readouterr()
+    status = run(arguments)
+    return status, *capsys.readouterr()
+
+
+def test_simulate_writes_columns_of_hinges_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out, picture = tmp_path / "run.csv", tmp_path / "run.png"
+    status, text, warnings = told(["simulate", "tugger_train", "-o", str(out), "--plot", str(picture), "--inputs",
+                                   "--json"], capsys)
+    assert status == 0 and warnings == ""
+    with out.open(encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert {"hinge_angle_rad[front]", "hinge_rate_rad_per_s[third]", "wheel_speed_rad_per_s[9]",
+            "steering_angle_rad[front]", "voltage_V[1]"} <= {*rows[0]}
+    assert len(rows) == 302 and all(len(row) == len(rows[0]) for row in rows)
+    assert picture.stat().st_size > 20_000
+    summary = json.loads(text)
+    assert summary["chosen"] == "auto" and summary["limited"] == [] and summary["no_slip"]["holds"]
+    assert summary["final"]["hinge_angle_rad[front]"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["tugger_train", "f1tenth"])
+def test_a_film_moves_every_body_and_turns_every_wheel(name: str, tmp_path: Path,
+                                                       capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.svg"
+    assert told(["simulate", name, "--film", str(path)], capsys)[0] == 0
+    film, scene = path.read_text(encoding="utf-8"), laconic.read_scene(name)
+    ElementTree.fromstring(film)
+    for number in range(1, len(scene.hinges) + 1):
+        assert f"@keyframes b{number} " in film and film.count(f'class="m b{number}"') == 1
+    for number in range(1, scene.wheel_count + 1):
+        assert film.count(f'class="m w{number}"') == 1
+    end = laconic.simulate(scene, ["body_x_m", "body_y_m"])
+    x, y = (float(end.columns[f"{axis}[{scene.hinges[0].name}]"][-1]) for axis in ("body_x_m", "body_y_m"))
+    assert f"animation-name: b1; transform: translate({x:.4f}px, {y:.4f}px)" in film
+
+
+def test_every_output_of_a_scene_with_hinges_can_be_asked_for(tmp_path: Path) -> None:
+    from laconic.scene.hinge_signals import HINGE_OUTPUTS, PAIRS, PLAIN_OUTPUTS, WHEEL_OUTPUTS
+
+    scene = laconic.read_scene("wheelchair").with_run(duration_s=1.0)
+    run_ = laconic.simulate(scene, [*PAIRS, *PLAIN_OUTPUTS, *WHEEL_OUTPUTS, *HINGE_OUTPUTS])
+    assert len(run_.columns) == 2 * 2 + 9 + 5 * 4 + 8 * 2
+    speed, x = run_.columns_of("velocity_body_m_per_s")[:, 0], run_.columns["x_m"]
+    assert np.abs(np.gradient(x, run_.time_s) - speed)[5:-5].max() < 0.01
+    acceleration = run_.columns_of("acceleration_body_m_per_s2")[:, 0]
+    assert np.abs(np.gradient(speed, run_.time_s) - acceleration)[5:-5].max() < 0.01
+    with pytest.raises(BadInput, match=r"there is no signal 'slip_along"):
+        laconic.simulate(scene, ["slip_along_m_per_s"])
+
+
+@pytest.mark.parametrize("method", ["auto", "rk4", "circle", "moebius-4"])
+def test_simulate_takes_each_method_of_these_vehicles(method: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, text, _ = told(["simulate", "f1tenth", "--method", method, "--json"], capsys)
+    assert status == 0
+    found = json.loads(text)
+    assert found["chosen"] == method and found["final"]["x_m"] == pytest.approx(7.9009, abs=1e-3)
+
+
+@pytest.mark.parametrize("method", ["exact-flow", "taylor-8", "exponential-kahan"])
+def test_other_methods_are_refused_with_the_list_of_those(method: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["simulate", "f1tenth", "--method", method], ["verify", str(REFERENCE), "--method", method]):
+        status, _, why = told(arguments, capsys)
+        assert status == 2 and why.count("\n") == 1
+        assert all(name in why for name in ("auto", "rk4", "circle", "moebius-4"))
+    status, _, why = told(["simulate", "s1", "--method", "circle"], capsys)
+    assert status == 2 and "exact-flow" in why
+
+
+@pytest.mark.parametrize(("step_s", "limit"), [("0.001", 1e-9), ("0.01", 1e-5)])
+def test_verify_reads_the_references_and_gives_five_errors(step_s: str, limit: float,
+                                                           capsys: pytest.CaptureFixture[str]) -> None:
+    status, text, _ = told(["verify", str(REFERENCE), "--step", step_s, "--tolerance", str(limit), "--json"], capsys)
+    assert status == 0
+    cases = json.loads(text)["cases"]
+    kinds = ("velocity", "hinge_rate", "hinge_angle", "pose", "wheel")
+    assert len(cases) == 8
+    for case in cases:
+        assert case["status"] == "ok" and all(0.0 <= case[f"error_{kind}"] <= limit for kind in kinds), case["name"]
+
+
+def test_verify_fails_for_a_reference_that_is_off_and_for_a_tolerance(tmp_path: Path,
+                                                                      capsys: pytest.CaptureFixture[str]) -> None:
+    assert told(["verify", str(REFERENCE), "--tolerance", "1e-15"], capsys)[0] == 1
+    content = json.loads(REFERENCE.read_text(encoding="utf-8"))
+    content["cases"] = content["cases"][:1]
+    content["cases"][0]["states"][3]["psi"][0] = "0.5"
+    path = tmp_path / "off.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    status, text, _ = told(["verify", str(path), "--json"], capsys)
+    assert status == 0 and json.loads(text)["cases"][0]["error_hinge_angle"] > 1e-2
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    (lambda case: case["vehicle"]["bodies"][1].update(parent=4), "bodies[2].parent: is 4"),
+    (lambda case: case["vehicle"]["bodies"][1]["joint"].update(kind="ball"), "joint.kind: there is no 'ball'"),
+    (lambda case: case["vehicle"]["wheels"][0].update(body=7), "wheels[1].body: is 7"),
+    (lambda case: case["initial"].pop("psi"), "initial.psi: is missing"),
+    (lambda case: case["states"].pop(), "states: are"),
+    (lambda case: case["segments"][0].update(hinge_rate={"5": [1]}), "hinge_rate: names the body 5"),
+    (lambda case: case["segments"][0].update(twist=[[1]]), "twist: has 1 lists"),
+    (lambda case: case["states"][1].update(pose=["a", "0", "0"]), "pose: holds 'a'")])
+def test_a_reference_that_cannot_be_read_is_one_line(change, words: str, tmp_path: Path,  # type: ignore[no-untyped-def]
+                                                     capsys: pytest.CaptureFixture[str]) -> None:
+    content = json.loads(REFERENCE.read_text(encoding="utf-8"))
+    change(content["cases"][0])
+    path = tmp_path / "bad.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    status, _, why = told(["verify", str(path)], capsys)
+    assert status == 2 and words in why and why.count("\n") == 1
+
+
+def elsewhere(tmp_path: Path) -> dict[str, list[str]]:
+    """Every other command that takes a scene, with what it needs besides."""
+    log = tmp_path / "log.csv"
+    log.write_text("t_s,x_m,y_m\n0,0,0\n1,1,0\n", encoding="utf-8")
+    can = ["--interface", "virtual", "--channel", "none"]
+    return {"analyse": ["SCENE"], "derive": ["SCENE"], "fmu": ["SCENE", "--fmi", "3"], "trim": ["SCENE"],
+            "rig": ["SCENE", *can, "--lockstep"], "play": ["SCENE", *can, "--drives", "canopen"],
+            "replay": [str(log), "SCENE"], "identify": [str(log), "--scene", "SCENE", "-o", str(tmp_path / "f.toml")],
+            "optimise": ["SCENE", "--free", "vehicle.mass_kg=1:2", "--goal", "min speed"],
+            "sweep": ["SCENE", "--vary", "vehicle.mass_kg=1:2:3", "-o", str(tmp_path / "sweep")],
+            "report": ["--scene", "SCENE"], "demo": ["SCENE"], "ros2": ["SCENE"]}
+
+
+def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> None:
+    texts = {path.stem: path.read_text(encoding="utf-8")
+             for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
+    takes = {name for name, text in texts.items() if "SceneName(" in text}
+    assert takes - {"simulate"} == {*elsewhere(tmp_path)}
+    assert [name for name, text in texts.items() if "SceneName(hinges=True)" in text] == ["simulate"]
+
+
+@pytest.mark.parametrize("command", ["analyse", "derive", "fmu", "trim", "rig", "play", "replay", "identify",
+                                     "optimise", "sweep", "report", "demo", "ros2"])
+@pytest.mark.parametrize("name", ["f1tenth", "mir_like", "tugger_train", "wheel_loader"])
+def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, name: str, tmp_path: Path,
+                                                                capsys: pytest.CaptureFixture[str]) -> None:
+    scene = SCENE_DIR / f"{name}.toml"
+    arguments = [str(scene) if each == "SCENE" else each for each in elsewhere(tmp_path)[command]]
+    status, text, why = told([command, *arguments], capsys)
+    assert status == 2 and text == "" and why.count("\n") == 1
+    assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
+
+
+@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"]])
+def test_options_of_simulate_that_know_no_hinges_are_refused(option: list[str], tmp_path: Path,
+                                                            monkeypatch: pytest.MonkeyPatch,
+                                                            capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, _, why = told(["simulate", "f1tenth", *option], capsys)
+    assert status == 2 and f"{option[0]} {DOES_NOT}" in why
+
+
+def test_verify_of_a_scene_and_enclosures_refuse_hinges(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["verify", "f1tenth", "--enclose"], ["verify", str(REFERENCE), "--enclose"]):
+        status, _, why = told(arguments, capsys)
+        assert status == 2 and ("hinges" in why) and why.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", HINGED)
+def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str, tmp_path: Path) -> None:
+    from laconic.scene.ground import check_ideal_ground
+    from laconic.scene.standing import standing_of
+    from laconic.tools.enclosure.readings import check_enclosable
+    from laconic.tools.trim.scene_files import trimmed
+    from laconic.tools.verify.reference import Reference
+
+    scene = laconic.read_scene(name)
+    calls = (lambda: laconic.Vehicle.of(scene), lambda: laconic.Vehicle(scene.vehicle), lambda: laconic.analyse(scene),
+             lambda: laconic.make_fmu(scene, tmp_path / "x.fmu", version=3), lambda: scene.plant(scene.core()),
+             lambda: scene.model(scene.core()), lambda: scene.c_start(scene.core()), lambda: standing_of(scene),
+             lambda: Reference(scene.vehicle), lambda: trimmed(scene, "single"), lambda: check_enclosable(scene),
+             lambda: check_ideal_ground(scene, "derive"), lambda: laconic.simulate(scene, estimated=True))
+    for call in calls:
+        with pytest.raises(BadInput, match="hinges"):
+            call()
+
+
+def test_limits_that_held_a_command_back_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    turn = {"signal": "steering_angle_rad", "kind": "steps", "t_s": [1.0], "value": [0.6]}
+    tables = tables_of("f1tenth", input=[*held(voltage_V__1=2.0, voltage_V__2=2.0), turn])
+    path = tmp_path / "car.toml"
+    path.write_text("\n".join(lines_of(tables, {})), encoding="utf-8")
+    status, _, warning = told(["simulate", str(path)], capsys)
+    assert status == 0 and "front_left: the limit of its angle held the command back" in warning
+    assert "front_left: the limit of its rate held the command back for" in warning
+
+
+def test_a_run_that_is_refused_on_the_way_keeps_what_was_before(tmp_path: Path) -> None:
+    tables = two_wheels(caster=[{**CASTER, "start_angle_rad": 0.01, "stop_low_rad": -1.0, "stop_high_rad": 1.0}])
+    scene = scene_with(tables, initial={"velocity_body_m_per_s": [-0.8, 0.0]})
+    with pytest.raises(laconic.RunRefused, match=r"caster\[1\] \(caster_1\): comes to its stop at 1 rad") as why:
+        laconic.simulate(scene)
+    run_ = why.value.run
+    assert 0.2 < run_.time_s[-1] < 0.4 and run_.columns["hinge_angle_rad[caster_1]"][-1] <= 1.0

@@ -1,0 +1,76 @@
+"""What the FMU of a vehicle with hinges is made of: start values by the names of its variables, and what it lacks."""
+
+from __future__ import annotations
+
+import math
+
+from laconic.base.paths import SOURCE_DIR
+from laconic.core import load
+from laconic.core.articulated import body_members, method_names
+from laconic.errors import BadInput
+from laconic.scene import Scene
+from laconic.scene.hinge_signals import TWIST
+from laconic.simulation.articulated import start_plant
+from laconic.simulation.steering import Commands
+from laconic_fmu.description import read
+
+DESCRIPTION = SOURCE_DIR / "fmu/articulated/modelDescription.xml"
+OF_BODY = ("hinge_x_m", "hinge_y_m", "mass_kg", "com_x_m", "com_y_m", "yaw_inertia_kgm2")
+"""Members of a body whose variables begin with body_; those of the others begin with hinge_."""
+
+
+def variable_of(member: str) -> str:
+    """The variable of a body's member."""
+    return f"{'body' if member in OF_BODY else 'hinge'}_{member}"
+
+
+def start_values(scene: Scene) -> dict[str, list[float]]:
+    """The scene's vehicle, start, method and step by the names of the FMI variables."""
+    core = load("double")
+    articulated = scene.articulated_vehicle(core)
+    row = Commands(scene, articulated, scene.inputs_on_grid()).first_row()
+    start_plant(scene, articulated, row)  # refuses a scene that cannot start, naming the field
+    vehicle, twist = articulated.c, articulated.slot(TWIST)
+    known = {variable.name for variable in read(DESCRIPTION).variables}
+    base, wheels, bodies = vehicle.base, scene.wheel_count, range(vehicle.body_count)
+    values: dict[str, list[float]] = {}
+    for field in core.fields:
+        if field.root == "vehicle" and field.table != "vehicle.motor" and field.name in known:
+            values[field.name] = field.values(base)[: wheels if field.items == core.max_wheels else None]
+    values |= {"body_count": [vehicle.body_count], "wheel_body": list(vehicle.wheel_body)[:wheels],
+               "body_parent": [vehicle.body[b].parent for b in bodies],
+               "body_hinge": [int(vehicle.body[b].hinge) for b in bodies],
+               "hinge_is_ball": [hinge.form == "trailer" for hinge in scene.hinges]}
+    values |= {variable_of(member): [float(getattr(vehicle.body[b], member)) for b in bodies]
+               for member in body_members(core)}
+    if articulated.is_coordinated:
+        values["steering_twist"] = list(row[twist : twist + 3])
+    return values | _start(scene) | {"method": [method_names().index(scene.run.method)], "step_s": [scene.run.step_s]}
+
+
+def _start(scene: Scene) -> dict[str, list[float]]:
+    start = scene.initial
+    return {"start_velocity_m_per_s": list(start.velocity_body_m_per_s),
+            "start_yaw_rate_rad_per_s": [start.yaw_rate_rad_per_s], "start_x_m": [start.x_m],
+            "start_y_m": [start.y_m], "start_heading_rad": [start.heading_rad],
+            "start_hinge_rad": [hinge.start_angle_rad for hinge in scene.hinges],
+            "start_hinge_rate_rad_per_s": [hinge.start_rate_rad_per_s for hinge in scene.hinges]}
+
+
+def check(scene: Scene, derivatives: bool, estimate: bool) -> None:
+    """BadInput for what such an FMU does not have."""
+    for option, wanted in (("derivatives", derivatives), ("estimate", estimate)):
+        if wanted:
+            raise BadInput(f"{option}: the FMU of a vehicle with hinges ({scene.path}) has no such variant yet; leave "
+                           "it out")
+    if scene.sensors.imu is not None or scene.sensors.encoder is not None:
+        raise BadInput(f"{scene.path}: sensors: the FMU of a vehicle with hinges has no sensors yet; take them out")
+
+
+def left_out(scene: Scene) -> str:
+    """One line for what the scene has and its FMU does not; "" for none."""
+    limited = [hinge.name for hinge in scene.hinges if hinge.has_stops or math.isfinite(hinge.rate_limit_rad_per_s)]
+    if not limited:
+        return ""
+    return (f"{scene.path}: the FMU has no limits of angle and rate: those of {', '.join(limited)} are left out; keep "
+            "to them in what steers it")

@@ -1,0 +1,37 @@
+"""Outlines of bodies on hinges from above, for pictures and films."""
+
+from __future__ import annotations
+
+from laconic.core.articulated import CARRIAGE
+from laconic.scene import Scene
+
+DRAWN = ("origin_x_m", "origin_y_m", "body_x_m", "body_y_m", "body_heading_rad")
+"""What a run keeps for its picture besides the usual signals."""
+
+
+def outline_points(scene: Scene) -> dict[str, list[complex]]:
+    """What a body's outline holds, in its own frame: its hinge, the hinges on it, its wheels and supports."""
+    found: dict[str, list[complex]] = {CARRIAGE: [complex(each["x_m"], each["y_m"])
+                                                  for each in scene.vehicle["support"]]}
+    found |= {hinge.name: [0j] for hinge in scene.hinges}
+    for body in scene.vehicle["body"]:
+        found[body["parent"]].append(complex(body["hinge_x_m"], body["hinge_y_m"]))
+    for wheel in scene.vehicle["wheel"]:
+        found[wheel.get("body", CARRIAGE)].append(complex(wheel["x_m"], wheel["y_m"]))
+    return found
+
+
+def hull(points: list[complex]) -> list[complex]:
+    """Corners of the smallest convex outline."""
+    order = sorted(set(points), key=lambda p: (p.real, p.imag))
+    if len(order) < 3:
+        return order
+    halves = []
+    for way in (order, order[::-1]):
+        half: list[complex] = []
+        for point in way:
+            while len(half) > 1 and ((half[-1] - half[-2]).conjugate() * (point - half[-2])).imag <= 0.0:
+                half.pop()
+            half.append(point)
+        halves.append(half[:-1])
+    return halves[0] + halves[1]
