@@ -107,9 +107,9 @@ typedef struct laconic_innovation {
     laconic_real square; /* rᵀS⁻¹r                 */
 } laconic_innovation;
 
-/* A reading corrects the estimate at this moment: after predictions up to it. `innovation` may be NULL. Refuses NOT_FINITE
- * for a reading, NOT_POSITIVE where the settings have no such instrument, OVERFLOW where the estimate leaves the
- * range. */
+/* A reading corrects the estimate at this moment: after predictions up to it. `innovation` may be NULL. Refuses
+ * NOT_FINITE for a reading, NOT_POSITIVE where the settings have no such instrument, OVERFLOW where the estimate
+ * leaves the range. */
 
 /* Angles by which the wheels have turned since the last call; those of wheels without encoder are not read. */
 laconic_status laconic_filter_encoders(laconic_filter *filter, const laconic_model *model,

@@ -261,7 +261,7 @@ static void energy_is_that_of_the_body_and_of_its_wheels(void) {
     }
 }
 
-/* Steepest ascent along +x, then along +y: the robot gains g sin α a second away from it, on ground without friction. */
+/* Steepest ascent along +x, then along +y: the robot gains g sin α a second away from it. */
 static void a_slope_accelerates_downhill(void) {
     for (int axis = 0; axis < 2; axis++) {
         laconic_vehicle v = bare_body();
