@@ -39,12 +39,12 @@ static void mark_as_started(fmu_model *self) {
 fmu_status fmu_model_start(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     laconic_refusal why = no_refusal();
-    double change_m_per_s;
+    bool allowed;
     self->continuous = instance->kind == FMU_MODEL_EXCHANGE;
     laconic_status status = prepare(self, &why);
-    if (status == LACONIC_OK) status = fmu_articulated_start(self, &change_m_per_s, &why);
+    if (status == LACONIC_OK) status = fmu_articulated_start(self, &allowed, &why);
     if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "this vehicle cannot start");
-    if (fmu_articulated_check_start(instance, change_m_per_s) != FMU_OK) return FMU_ERROR;
+    if (!allowed) return fmu_articulated_refuse_start(instance);
     mark_as_started(self);
     fmu_articulated_check_idle(instance);
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUP_PLACE);

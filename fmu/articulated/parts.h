@@ -7,12 +7,12 @@
 /* (x, y) turned by a heading. */
 void fmu_articulated_turn(double turned[2], const laconic_heading *heading, double x, double y);
 
-/* The core's state at the start values; writes how far the wheels changed them. Refuses as
- * laconic_articulated_state_set. */
-laconic_status fmu_articulated_start(fmu_model *self, double *change_m_per_s, laconic_refusal *why);
+/* The core's state at the start values, or at the nearest motion where a fixed wheel would slide (not `allowed`).
+ * Refuses as laconic_articulated_state_set. */
+laconic_status fmu_articulated_start(fmu_model *self, bool *allowed, laconic_refusal *why);
 
-/* Refuses a start that makes a fixed wheel slide, with the nearest one. */
-fmu_status fmu_articulated_check_start(const fmu_instance *instance, double change_m_per_s);
+/* Logs a start that is not allowed, with the nearest one. */
+fmu_status fmu_articulated_refuse_start(const fmu_instance *instance);
 
 /* The continuous states of the core's state, and the core's state of them. The second refuses as
  * laconic_articulated_state_set. */

@@ -56,22 +56,50 @@ static laconic_articulated_start standing(const laconic_articulated_start *start
     return still;
 }
 
-laconic_status fmu_articulated_start(fmu_model *self, double *change_m_per_s, laconic_refusal *why) {
+/* The nearest motion to the start values that wheels and commands allow; writes by how much it differs. */
+static laconic_status set_start(fmu_model *self, double *change_m_per_s, const laconic_articulated_input *commands,
+                                laconic_refusal *why) {
     laconic_articulated_start start = standing(&self->start);
     laconic_status status =
-        laconic_articulated_state_set(&self->state, change_m_per_s, &self->prepared, &start, &self->input, why);
+        laconic_articulated_state_set(&self->state, change_m_per_s, &self->prepared, &start, commands, why);
     if (status != LACONIC_OK) return status;
     start = self->start;
     find_rolling_rates(&start, &self->prepared, &self->state);
-    return laconic_articulated_state_set(&self->state, change_m_per_s, &self->prepared, &start, &self->input, why);
+    return laconic_articulated_state_set(&self->state, change_m_per_s, &self->prepared, &start, commands, why);
 }
 
-fmu_status fmu_articulated_check_start(const fmu_instance *instance, double change_m_per_s) {
-    const fmu_model *self = &instance->model;
+static bool is_allowed(const fmu_model *self, double change_m_per_s) {
     const double *v = self->start.velocity_m_per_s, yaw = self->start.yaw_rate_rad_per_s;
     const double square_size = 1.0 + v[0] * v[0] + v[1] * v[1] + yaw * yaw;
+    return change_m_per_s * change_m_per_s <= ALLOWED_CHANGE * ALLOWED_CHANGE * square_size;
+}
+
+static laconic_articulated_input without_rates(const laconic_articulated_input *input) {
+    laconic_articulated_input still = *input;
+    for (int b = 0; b < LACONIC_MAX_BODIES; b++)
+        still.hinge_rate_rad_per_s[b] = still.hinge_acceleration_rad_per_s2[b] = 0.0;
+    for (int k = 0; k < 3; k++) still.twist_rate[k] = 0.0;
+    return still;
+}
+
+/* The start is a motion with the rates that are commanded, or one before that: then they jump at its beginning. */
+laconic_status fmu_articulated_start(fmu_model *self, bool *allowed, laconic_refusal *why) {
+    const laconic_articulated_input still = without_rates(&self->input);
+    double change_m_per_s;
+    laconic_status status = set_start(self, &change_m_per_s, &self->input, why);
+    *allowed = status == LACONIC_OK && is_allowed(self, change_m_per_s);
+    if (status != LACONIC_OK || *allowed) return status;
+    const laconic_articulated_state nearest = self->state;
+    status = set_start(self, &change_m_per_s, &still, why);
+    *allowed = status == LACONIC_OK && is_allowed(self, change_m_per_s);
+    if (*allowed) return laconic_articulated_jump(&self->prepared, &self->state, &self->input, why);
+    self->state = nearest;
+    return status;
+}
+
+fmu_status fmu_articulated_refuse_start(const fmu_instance *instance) {
+    const fmu_model *self = &instance->model;
     laconic_articulated_motion nearest;
-    if (change_m_per_s * change_m_per_s <= ALLOWED_CHANGE * ALLOWED_CHANGE * square_size) return FMU_OK;
     laconic_articulated_motion_of(&nearest, &self->prepared, &self->state);
     return fmu_refuse(
         instance,

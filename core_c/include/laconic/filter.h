@@ -107,17 +107,17 @@ typedef struct laconic_innovation {
     laconic_real square; /* rᵀS⁻¹r                 */
 } laconic_innovation;
 
-/* A reading corrects the estimate at this moment: after predictions up to it. `found` may be NULL. Refuses NOT_FINITE
+/* A reading corrects the estimate at this moment: after predictions up to it. `innovation` may be NULL. Refuses NOT_FINITE
  * for a reading, NOT_POSITIVE where the settings have no such instrument, OVERFLOW where the estimate leaves the
  * range. */
 
 /* Angles by which the wheels have turned since the last call; those of wheels without encoder are not read. */
 laconic_status laconic_filter_encoders(laconic_filter *filter, const laconic_model *model,
-                                       const laconic_real turned_rad[], laconic_innovation *found);
+                                       const laconic_real turned_rad[], laconic_innovation *innovation);
 
 /* Takes the gyro's reading, about the upward axis. */
 laconic_status laconic_filter_yaw_rate(laconic_filter *filter, const laconic_model *model,
-                                       laconic_real yaw_rate_rad_per_s, laconic_innovation *found);
+                                       laconic_real yaw_rate_rad_per_s, laconic_innovation *innovation);
 
 /* Takes the observed place of a point of the body and the body's heading, from a camera, a satellite receiver or a
  * scan matcher. A standard deviation of 0: that was not seen. */
@@ -129,7 +129,7 @@ typedef struct laconic_pose_fix {
 
 /* Refuses also NEGATIVE for a standard deviation. */
 laconic_status laconic_filter_fix(laconic_filter *filter, const laconic_model *model, const laconic_pose_fix *fix,
-                                  laconic_innovation *found);
+                                  laconic_innovation *innovation);
 
 /* Angles of wheels from counts of their encoders before and now, by the shorter way round; 0 for a wheel without. */
 void laconic_filter_turned(laconic_real turned_rad[], const laconic_sensor_settings *sensors, const int32_t before[],

@@ -14,10 +14,10 @@ int32_t laconic_batch_kinds_of(laconic_batch_kind *kinds, int32_t *status, const
     int32_t refused = 0;
     for (int32_t i = 0; i < count; i++) {
         laconic_vehicle vehicle;
-        laconic_status found = fitted(&vehicle, vehicles, motors, i);
-        if (found == LACONIC_OK) found = laconic_batch_kind_of(&kinds[i], &vehicle, method, step_s, NULL);
-        status[i] = (int32_t)found;
-        refused += found != LACONIC_OK;
+        laconic_status result = fitted(&vehicle, vehicles, motors, i);
+        if (result == LACONIC_OK) result = laconic_batch_kind_of(&kinds[i], &vehicle, method, step_s, NULL);
+        status[i] = (int32_t)result;
+        refused += result != LACONIC_OK;
     }
     return refused;
 }
@@ -27,11 +27,11 @@ int32_t laconic_batch_start(laconic_batch *batch, int32_t first_lane, int32_t la
     for (int32_t i = 0; i < lanes; i++) {
         const int32_t lane = first_lane + i;
         laconic_state state;
-        const laconic_status found =
+        const laconic_status result =
             laconic_state_set(&state, &batch->kinds[batch->kind_of[lane]].model, &starts[i], NULL);
-        if (found == LACONIC_OK) laconic_batch_load(batch, lane, &state);
-        batch->status[lane] = (int32_t)found;
-        refused += found != LACONIC_OK;
+        if (result == LACONIC_OK) laconic_batch_load(batch, lane, &state);
+        batch->status[lane] = (int32_t)result;
+        refused += result != LACONIC_OK;
     }
     return refused;
 }
@@ -41,10 +41,10 @@ int32_t laconic_batch_contacts_of(laconic_contact *contacts, int32_t *status, co
     int32_t refused = 0;
     for (int32_t i = 0; i < count; i++) {
         laconic_vehicle vehicle;
-        laconic_status found = fitted(&vehicle, vehicles, motors, i);
-        if (found == LACONIC_OK) found = laconic_contact_prepare(&contacts[i], &vehicle, NULL);
-        status[i] = (int32_t)found;
-        refused += found != LACONIC_OK;
+        laconic_status result = fitted(&vehicle, vehicles, motors, i);
+        if (result == LACONIC_OK) result = laconic_contact_prepare(&contacts[i], &vehicle, NULL);
+        status[i] = (int32_t)result;
+        refused += result != LACONIC_OK;
     }
     return refused;
 }

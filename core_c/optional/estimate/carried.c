@@ -26,16 +26,16 @@ static state_error error_in_model(const state_error *error, const laconic_plant 
     const real yaw = dot(vec(from->yaw_rate_of_zeta), error->travel), third = R(1) / laconic_root(R(3));
     const direction heading = laconic_direction_of_binary_angle(plant->state.heading.fraction);
     const vector every = vector_of(third, third, third); /* of length 1 */
-    state_error found = *error;
-    found.zeta = in_model(from, to, error->zeta);
-    found.travel = in_model(from, to, error->travel);
-    found.place_m[0] -= yaw * (heading.sine * dx + heading.cosine * dy);
-    found.place_m[1] += yaw * (heading.cosine * dx - heading.sine * dy);
-    found.floor_zeta = size(sizes_in_model(from, to, scaled(error->floor_zeta, every)));
-    found.floor_travel = size(sizes_in_model(from, to, scaled(error->floor_travel, every)));
-    found.doubt_zeta = sizes_in_model(from, to, error->doubt_zeta);
-    found.doubt_travel = sizes_in_model(from, to, error->doubt_travel);
-    return found;
+    state_error carried = *error;
+    carried.zeta = in_model(from, to, error->zeta);
+    carried.travel = in_model(from, to, error->travel);
+    carried.place_m[0] -= yaw * (heading.sine * dx + heading.cosine * dy);
+    carried.place_m[1] += yaw * (heading.cosine * dx - heading.sine * dy);
+    carried.floor_zeta = size(sizes_in_model(from, to, scaled(error->floor_zeta, every)));
+    carried.floor_travel = size(sizes_in_model(from, to, scaled(error->floor_travel, every)));
+    carried.doubt_zeta = sizes_in_model(from, to, error->doubt_zeta);
+    carried.doubt_travel = sizes_in_model(from, to, error->doubt_travel);
+    return carried;
 }
 
 /* The twin of a plant with friction, as the change leaves it. */

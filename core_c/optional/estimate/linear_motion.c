@@ -132,9 +132,9 @@ static vector share_of(vector change) {
 }
 
 static void carry_doubt(state_error *error, const state_error *before, vector stays) {
-    const vector made = minus(error->zeta, times(stays, before->zeta)); /* damping alone leaves no doubt */
+    const vector added_error = minus(error->zeta, times(stays, before->zeta)); /* damping alone leaves no doubt */
     const real dx = error->place_m[0] - before->place_m[0], dy = error->place_m[1] - before->place_m[1];
-    error->doubt_zeta = plus(times(stays, error->doubt_zeta), share_of(made));
+    error->doubt_zeta = plus(times(stays, error->doubt_zeta), share_of(added_error));
     error->doubt_travel = plus(error->doubt_travel, share_of(minus(error->travel, before->travel)));
     error->doubt_place_m += DOUBT * (magnitude(dx) + magnitude(dy));
 }

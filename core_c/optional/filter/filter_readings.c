@@ -7,14 +7,14 @@
 typedef struct correction {
     laconic_factors factors;
     real error[ERRORS];
-    laconic_innovation found;
+    laconic_innovation innovation;
 } correction;
 
 static void begin(correction *c, const laconic_filter *f) {
     c->factors = f->covariance;
     for (int32_t i = 0; i < ERRORS; i++) c->error[i] = R(0);
-    c->found.count = 0;
-    c->found.square = R(0);
+    c->innovation.count = 0;
+    c->innovation.square = R(0);
 }
 
 /* One number, h·errors + noise, which differs from the estimate by `residual`. */
@@ -23,12 +23,12 @@ static void take(correction *c, const real h[], real residual, real std, int32_t
     for (int32_t i = 0; i < rows; i++) residual -= h[i] * c->error[i];
     const real variance = laconic_factors_update(&c->factors, gain, h, std * std, rows);
     for (int32_t i = 0; i < rows; i++) c->error[i] += gain[i] * residual;
-    c->found.count++;
-    c->found.square += residual * residual / variance;
+    c->innovation.count++;
+    c->innovation.square += residual * residual / variance;
 }
 
 static bool is_sound(const correction *c, const laconic_filter *f) {
-    real zero = zero_if_finite(c->found.square), speed[3];
+    real zero = zero_if_finite(c->innovation.square), speed[3];
     store(speed, zeta_of(&f->state));
     for (int32_t i = 0; i < f->errors; i++) zero += zero_if_finite(c->error[i]);
     for (int32_t k = 0; k < f->dof; k++) speed[k] += c->error[row_of_zeta(f) + k];
@@ -37,7 +37,7 @@ static bool is_sound(const correction *c, const laconic_filter *f) {
            laconic_factors_finite(&c->factors, f->errors);
 }
 
-static laconic_status finish(laconic_filter *f, const correction *c, laconic_innovation *found) {
+static laconic_status finish(laconic_filter *f, const correction *c, laconic_innovation *innovation) {
     if (!is_sound(c, f)) return LACONIC_OVERFLOW;
     const real *error = c->error;
     laconic_state *state = &f->state;
@@ -48,7 +48,7 @@ static laconic_status finish(laconic_filter *f, const correction *c, laconic_inn
     if (f->biases > 0) f->bias_rad_per_s += error[row_of_bias(f)];
     for (int32_t k = 0; k < f->dof; k++) sum_add(&state->zeta[k], error[row_of_zeta(f) + k]);
     f->covariance = c->factors;
-    if (found != NULL) *found = c->found;
+    if (innovation != NULL) *innovation = c->innovation;
     return LACONIC_OK;
 }
 
@@ -64,7 +64,7 @@ static void measure_from(laconic_filter *f, const laconic_model *m, const real t
 }
 
 laconic_status laconic_filter_encoders(laconic_filter *filter, const laconic_model *model,
-                                       const laconic_real turned_rad[], laconic_innovation *found) {
+                                       const laconic_real turned_rad[], laconic_innovation *innovation) {
     correction c;
     real angle[LACONIC_MAX_WHEELS], h[ERRORS] = {R(0)};
     if (filter->travels == 0) return LACONIC_NOT_POSITIVE;
@@ -77,7 +77,7 @@ laconic_status laconic_filter_encoders(laconic_filter *filter, const laconic_mod
         for (int32_t k = 0; k < filter->travels; k++) h[k] = model->wheel_of_zeta[i][k];
         take(&c, h, turned_rad[i] - angle[i], std, filter->errors);
     }
-    const laconic_status status = finish(filter, &c, found);
+    const laconic_status status = finish(filter, &c, innovation);
     if (status == LACONIC_OK) measure_from(filter, model, turned_rad);
     return status;
 }
@@ -106,7 +106,7 @@ void laconic_filter_turned(laconic_real turned_rad[], const laconic_sensor_setti
 /* ------------------------------------------------------------------------------------- gyro -- */
 
 laconic_status laconic_filter_yaw_rate(laconic_filter *filter, const laconic_model *model,
-                                       laconic_real yaw_rate_rad_per_s, laconic_innovation *found) {
+                                       laconic_real yaw_rate_rad_per_s, laconic_innovation *innovation) {
     correction c;
     real h[ERRORS] = {R(0)};
     const vector zeta = zeta_of(&filter->state);
@@ -117,7 +117,7 @@ laconic_status laconic_filter_yaw_rate(laconic_filter *filter, const laconic_mod
     if (filter->biases > 0) h[row_of_bias(filter)] = R(1);
     take(&c, h, yaw_rate_rad_per_s - dot(vec(model->yaw_rate_of_zeta), zeta) - filter->bias_rad_per_s,
          filter->settings.yaw_rate_std_rad_per_s, filter->errors);
-    return finish(filter, &c, found);
+    return finish(filter, &c, innovation);
 }
 
 /* --------------------------------------------------------------------------------- the pose -- */
@@ -154,12 +154,12 @@ static void take_heading(correction *c, const laconic_filter *f, const laconic_p
 }
 
 laconic_status laconic_filter_fix(laconic_filter *filter, const laconic_model *model, const laconic_pose_fix *fix,
-                                  laconic_innovation *found) {
+                                  laconic_innovation *innovation) {
     correction c;
     const laconic_status status = check_fix(fix);
     if (status != LACONIC_OK) return status;
     begin(&c, filter);
     if (fix->std_m > R(0)) take_place(&c, filter, model, fix);
     if (fix->heading_std_rad > R(0)) take_heading(&c, filter, fix);
-    return finish(filter, &c, found);
+    return finish(filter, &c, innovation);
 }

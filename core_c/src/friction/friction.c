@@ -162,12 +162,13 @@ static void set_at_rest(laconic_slip *slip, const laconic_friction *f) {
 laconic_status laconic_slip_set(laconic_slip *slip, const laconic_friction *friction, const laconic_vehicle *vehicle,
                                 const laconic_start *start, laconic_refusal *why) {
     const laconic_status status = check_wheel_start(friction, vehicle, start, why);
-    bool given = false;
+    bool has_speeds = false;
     if (status != LACONIC_OK) return status;
     set_at_rest(slip, friction);
-    for (int32_t i = 0; i < friction->wheel_count; i++) given = given || start->wheel_speed_rad_per_s[i] != R(0);
+    for (int32_t i = 0; i < friction->wheel_count; i++)
+        has_speeds = has_speeds || start->wheel_speed_rad_per_s[i] != R(0);
     roll(slip, friction, start->nu_rad_per_s);
-    for (int32_t i = 0; i < friction->wheel_count && given && friction->slips; i++)
+    for (int32_t i = 0; i < friction->wheel_count && has_speeds && friction->slips; i++)
         if (!friction->axle[i].locked) slip->wheel_speed_rad_per_s[i] = start->wheel_speed_rad_per_s[i];
     return LACONIC_OK;
 }

@@ -12,27 +12,27 @@ static real needed(const laconic_reactions *r, int32_t wheel) {
 }
 
 /* NaN counts as worse than every number. */
-static void keep_worse(finding *found, int32_t index, real value, real limit) {
-    if (value >= limit || (found->point != 0 && value >= found->by_N)) return;
-    found->point = index + 1;
-    found->by_N = value;
+static void keep_worse(finding *worst, int32_t index, real value, real limit) {
+    if (value >= limit || (worst->point != 0 && value >= worst->by_N)) return;
+    worst->point = index + 1;
+    worst->by_N = value;
 }
 
 static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, int32_t wheels, real rounding_N) {
-    finding found = {0, R(0)};
-    if (r->no_slip_margin_N >= -rounding_N || !(c->friction_coefficient > R(0))) return found;
+    finding worst = {0, R(0)};
+    if (r->no_slip_margin_N >= -rounding_N || !(c->friction_coefficient > R(0))) return worst;
     for (int32_t i = 0; i < wheels; i++) {
         const real needed_N = needed(r, i);
         if (needed_N <= rounding_N) continue; /* it may lift, but without a reaction it does not slip */
-        keep_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
+        keep_worse(&worst, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
     }
-    return found;
+    return worst;
 }
 
 static finding worst_lift(const laconic_contact *c, const laconic_reactions *r, real rounding_N) {
-    finding found = {0, R(0)};
-    for (int32_t i = 0; i < c->point_count; i++) keep_worse(&found, i, r->normal_N[i], -rounding_N);
-    return found;
+    finding worst = {0, R(0)};
+    for (int32_t i = 0; i < c->point_count; i++) keep_worse(&worst, i, r->normal_N[i], -rounding_N);
+    return worst;
 }
 
 static void enter(laconic_grip_event *first, laconic_grip_event *worst, uint64_t *count, const laconic_grip_event *now,

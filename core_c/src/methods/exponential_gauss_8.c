@@ -177,39 +177,39 @@ RARE mask take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laco
 }
 
 /* What follows from ζ and F at the nodes. */
-INLINE void finish_panel(progress *found, const laconic_model *m, const panel *p, vector start,
-                         const node_vectors *zeta, const node_vectors *rate) {
+INLINE void finish_panel(progress *sum, const laconic_model *m, const panel *p, vector start, const node_vectors *zeta,
+                         const node_vectors *rate) {
     const vector mean = plus(start, weighted(p, OF_MEAN, rate));
-    found->delta = plus(found->delta, weighted(p, AT_END, rate));
-    found->mean = plus(found->mean, scaled(p->share, mean));
+    sum->delta = plus(sum->delta, weighted(p, AT_END, rate));
+    sum->mean = plus(sum->mean, scaled(p->share, mean));
     if (!LACONIC_WITH_POSE) return; /* then no force is fixed in the world */
     const vector path = scaled(p->h, mean);
     if (p->is_whole) {
-        found->moved = whole_displacement(m, p->h, zeta, path);
+        sum->moved = whole_displacement(m, p->h, zeta, path);
     } else {
         const node_vectors at = *zeta, f = *rate; /* only copies are in memory */
-        add_displacement(&found->moved, m, p, start, &at, &f, path);
+        add_displacement(&sum->moved, m, p, start, &at, &f, path);
     }
 }
 
-static void take_panel(progress *found, const laconic_model *m, const panel *p, vector step_start) {
-    const vector start = plus(step_start, found->delta);
+static void take_panel(progress *sum, const laconic_model *m, const panel *p, vector step_start) {
+    const vector start = plus(step_start, sum->delta);
     if (p->varying == NULL) {
         node_vectors zeta, rate;
         const mask settled = take_rounds(&zeta, &rate, m, p, start);
-        found->settled = AND(found->settled, settled);
-        finish_panel(found, m, p, start, &zeta, &rate);
+        sum->settled = AND(sum->settled, settled);
+        finish_panel(sum, m, p, start, &zeta, &rate);
     } else {
         node_vectors zeta, rate; /* others, since these are in memory */
-        const mask settled = take_varying_rounds(&zeta, &rate, m, p, start, found->moved.yaw_change_rad);
-        found->settled = AND(found->settled, settled);
-        finish_panel(found, m, p, start, &zeta, &rate);
+        const mask settled = take_varying_rounds(&zeta, &rate, m, p, start, sum->moved.yaw_change_rad);
+        sum->settled = AND(sum->settled, settled);
+        finish_panel(sum, m, p, start, &zeta, &rate);
     }
 }
 
 /* -------------------------------------------------------------------------------- the step -- */
 
-RARE void take_panels(progress *found, const laconic_model *m, const laconic_integrator *integrator, panel *p,
+RARE void take_panels(progress *sum, const laconic_model *m, const laconic_integrator *integrator, panel *p,
                       vector step_start) {
     panel_among among;
     first_panel(&among, m, integrator);
@@ -219,15 +219,15 @@ RARE void take_panels(progress *found, const laconic_model *m, const laconic_int
         p->h = among.h;
         p->first = among.first;
         p->share = among.share;
-        take_panel(found, m, p, step_start);
+        take_panel(sum, m, p, step_start);
     }
-    if (LACONIC_WITH_POSE) found->moved = seen_half_way(found->moved);
+    if (LACONIC_WITH_POSE) sum->moved = seen_half_way(sum->moved);
 }
 
 static laconic_status exponential_gauss_8_step(const laconic_model *model, const laconic_integrator *integrator,
                                                laconic_state *state, const laconic_forcing_samples *samples) {
     vector zeta = zeta_of(state);
-    progress found = {none, none, {R(0), R(0), R(0)}, R(0) == R(0)};
+    progress sum = {none, none, {R(0), R(0), R(0)}, R(0) == R(0)};
     forcing_terms terms;
     panel p;
     if (UNLIKELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
@@ -246,15 +246,15 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
         p.varying = &terms;
     }
     if (p.is_whole)
-        take_panel(&found, model, &p, zeta);
+        take_panel(&sum, model, &p, zeta);
     else
-        take_panels(&found, model, integrator, &p, zeta);
-    increment by = {found.delta, found.mean, found.delta};
-    if (!LIKELY(found.settled, &found.moved.along_m)) return LACONIC_STEP_SINGULAR;
-    if (!LIKELY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &found.moved.along_m))
+        take_panels(&sum, model, integrator, &p, zeta);
+    increment by = {sum.delta, sum.mean, sum.delta};
+    if (!LIKELY(sum.settled, &sum.moved.along_m)) return LACONIC_STEP_SINGULAR;
+    if (!LIKELY(keeps_energy(model, state, integrator->step_s, samples, zeta, &by), &sum.moved.along_m))
         return not_passive(by);
-    if (!LIKELY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
-    return end_levelled(state, model, integrator->step_s, samples, by, found.moved);
+    if (!LIKELY(in_range(zeta, by.delta), &sum.moved.along_m)) return LACONIC_OVERFLOW;
+    return end_levelled(state, model, integrator->step_s, samples, by, sum.moved);
 }
 
 /* ------------------------------------------------------------------------------ preparation -- */

@@ -121,10 +121,10 @@ static uint64_t run(laconic_plant *plant, const laconic_input *held, uint64_t st
 /* The refusal that belongs to the status of a refused step. */
 static laconic_status refused(const laconic_plant *plant, laconic_status status, const laconic_input *inputs,
                               int32_t count, laconic_refusal *why) {
-    laconic_refusal found;
-    laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, inputs, count);
-    if (why != NULL) *why = found;
-    return found.status;
+    laconic_refusal refusal;
+    laconic_step_refusal(&refusal, status, &plant->model, &plant->integrator, &plant->state, inputs, count);
+    if (why != NULL) *why = refusal;
+    return refusal.status;
 }
 
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps,

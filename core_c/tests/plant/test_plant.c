@@ -261,6 +261,24 @@ static void energy_is_that_of_the_body_and_of_its_wheels(void) {
     }
 }
 
+/* Steepest ascent along +x, then along +y: the robot gains g sin α a second away from it, on ground without friction. */
+static void a_slope_accelerates_downhill(void) {
+    for (int axis = 0; axis < 2; axis++) {
+        laconic_vehicle v = bare_body();
+        laconic_plant plant;
+        const laconic_start at_rest = start_with(0, 0, 0);
+        const laconic_input none_acts = no_input();
+        laconic_real nu[3];
+        v.ground.slope_rad = REAL(0.2);
+        v.ground.slope_heading_rad = REAL(axis * PI / 2);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(0.01), &at_rest, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &none_acts, 50, &why));
+        laconic_nu(&plant.model, &plant.state, nu);
+        ASSERT_NEAR(EITHER(1e-12, 1e-5), -LACONIC_GRAVITY_M_PER_S2 * sin(0.2) * 0.5 / RADIUS, nu[axis]);
+        ASSERT_NEAR(EITHER(1e-12, 1e-5), 0, nu[1 - axis]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(running_is_stepping);
@@ -278,5 +296,6 @@ int main(void) {
     RUN_TEST(with_friction_no_method_but_auto_is_taken);
     RUN_TEST(wheels_that_roll_turn_as_on_ideal_ground);
     RUN_TEST(energy_is_that_of_the_body_and_of_its_wheels);
+    RUN_TEST(a_slope_accelerates_downhill);
     return UNITY_END();
 }

@@ -139,7 +139,7 @@ def elsewhere(tmp_path: Path) -> dict[str, list[str]]:
     log = tmp_path / "log.csv"
     log.write_text("t_s,x_m,y_m\n0,0,0\n1,1,0\n", encoding="utf-8")
     can = ["--interface", "virtual", "--channel", "none"]
-    return {"analyse": ["SCENE"], "derive": ["SCENE"], "fmu": ["SCENE", "--fmi", "3"], "trim": ["SCENE"],
+    return {"analyse": ["SCENE"], "derive": ["SCENE"], "trim": ["SCENE"],
             "rig": ["SCENE", *can, "--lockstep"], "play": ["SCENE", *can, "--drives", "canopen"],
             "replay": [str(log), "SCENE"], "identify": [str(log), "--scene", "SCENE", "-o", str(tmp_path / "f.toml")],
             "optimise": ["SCENE", "--free", "vehicle.mass_kg=1:2", "--goal", "min speed"],
@@ -151,11 +151,11 @@ def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> 
     texts = {path.stem: path.read_text(encoding="utf-8")
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
-    assert takes - {"simulate"} == {*elsewhere(tmp_path)}
-    assert [name for name, text in texts.items() if "SceneName(hinges=True)" in text] == ["simulate"]
+    with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
+    assert with_hinges == {"simulate", "fmu"} and takes - with_hinges == {*elsewhere(tmp_path)}
 
 
-@pytest.mark.parametrize("command", ["analyse", "derive", "fmu", "trim", "rig", "play", "replay", "identify",
+@pytest.mark.parametrize("command", ["analyse", "derive", "trim", "rig", "play", "replay", "identify",
                                      "optimise", "sweep", "report", "demo", "ros2"])
 @pytest.mark.parametrize("name", ["f1tenth", "mir_like", "tugger_train", "wheel_loader"])
 def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, name: str, tmp_path: Path,
@@ -183,7 +183,7 @@ def test_verify_of_a_scene_and_enclosures_refuse_hinges(capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize("name", HINGED)
-def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str, tmp_path: Path) -> None:
+def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str) -> None:
     from laconic.scene.ground import check_ideal_ground
     from laconic.scene.standing import standing_of
     from laconic.tools.enclosure.readings import check_enclosable
@@ -192,7 +192,7 @@ def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str, tmp
 
     scene = laconic.read_scene(name)
     calls = (lambda: laconic.Vehicle.of(scene), lambda: laconic.Vehicle(scene.vehicle), lambda: laconic.analyse(scene),
-             lambda: laconic.make_fmu(scene, tmp_path / "x.fmu", version=3), lambda: scene.plant(scene.core()),
+             lambda: scene.plant(scene.core()),
              lambda: scene.model(scene.core()), lambda: scene.c_start(scene.core()), lambda: standing_of(scene),
              lambda: Reference(scene.vehicle), lambda: trimmed(scene, "single"), lambda: check_enclosable(scene),
              lambda: check_ideal_ground(scene, "derive"), lambda: laconic.simulate(scene, estimated=True))

@@ -57,9 +57,11 @@ def _start(scene: Scene) -> dict[str, list[float]]:
             "start_hinge_rate_rad_per_s": [hinge.start_rate_rad_per_s for hinge in scene.hinges]}
 
 
-def check(scene: Scene, derivatives: bool, estimate: bool) -> None:
-    """BadInput for what such an FMU does not have."""
-    for option, wanted in (("derivatives", derivatives), ("estimate", estimate)):
+def check(scene: Scene, **options: bool) -> None:
+    """BadInput for an option, or a part of the scene, that the FMU of a vehicle with hinges does not have."""
+    if not scene.has_hinges:
+        return
+    for option, wanted in options.items():
         if wanted:
             raise BadInput(f"{option}: the FMU of a vehicle with hinges ({scene.path}) has no such variant yet; leave "
                            "it out")

@@ -81,8 +81,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))
     check_file("out", path)
-    if scene.has_hinges:
-        hinges.check(scene, derivatives, estimate)
+    hinges.check(scene, derivatives=derivatives, estimate=estimate)
     if derivatives:
         _check_smooth(scene)
     if scene.wheel_count == 0 and version == 3 and not scalar:

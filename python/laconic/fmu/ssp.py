@@ -17,7 +17,7 @@ from typing import Any
 from laconic.base.outputs import whole_file
 from laconic.base.paths import SOURCE_DIR, built
 from laconic.errors import BadInput
-from laconic.fmu import DESCRIPTION, content_of, make_fmu
+from laconic.fmu import DESCRIPTION, content_of, hinges, make_fmu
 from laconic.scene import Scene
 from laconic_fmu.archive import Variant, scene_fmu
 from laconic_fmu.description import Description, read
@@ -145,6 +145,7 @@ def make_ssp(scene: Scene, out: Path, *, version: int = 2, sources: bool = True,
     """Writes the archive: both FMUs and how they are connected; BadInput where there can be none."""
     if version != 2:
         raise BadInput("--ssp: SSP 1.0 has no FMUs of FMI 3; use --fmi 2")
+    hinges.check(scene, ssp=True)
     if scene.wheel_count == 0:
         raise BadInput(f"{scene.path}: vehicle.wheel: there is nothing to control without wheels; leave out --ssp")
     options: dict[str, Any] = {"version": version, "sources": sources, "enumerations": enumerations}

@@ -43,14 +43,6 @@ class Limited:
                 f"first at {self.first_s:g} s")
 
 
-class _AtLimit(Exception):
-    """A command beyond a limit whose hinge refuses it, in a step."""
-
-    def __init__(self, step: int, refused: Refused):
-        super().__init__(step)
-        self.step, self.refused = step, refused
-
-
 @dataclass
 class Commands:
     """The rows of inputs of a run, in order; `limited` fills as they are made, `refused` says what ends the run."""
@@ -67,6 +59,7 @@ class Commands:
         self._plain = [(at, self.vehicle.slot(signal)) for signal, at in self._numbers.items()
                        if signal.partition("[")[0] not in (ANGLE, CURVATURE)]
         self._steering = _Steering(self.scene, self._numbers) if self.vehicle.is_coordinated else None
+        self._ends = 0  # the step that a limit refuses
         self._twist: np.ndarray | None = None
         self._stuck: tuple[np.ndarray, Hinge, str, float, float] | None = None  # the target of a hinge at its stop
 
@@ -98,10 +91,10 @@ class Commands:
         """The step before which commands can be followed."""
         try:
             follow()
-        except _AtLimit as limit:
-            if limit.step < end:
-                self.refused = limit.refused
-            return limit.step
+        except Refused as refused:
+            if self._ends < end:
+                self.refused = refused
+            return self._ends
         return end
 
     def row_at(self, tick: int, before: np.ndarray | None) -> np.ndarray:
@@ -134,6 +127,11 @@ class Commands:
         slot, h = self.vehicle.slot(f"{RATE}[{hinge.name}]"), self.inputs.step_s
         column = self._numbers.get(f"{ANGLE}[{hinge.name}]")
         angle, most = self._angle[hinge.name], hinge.rate_limit_rad_per_s
+        rates = rows[:, :, slot] if column is None else _held_rates(angle, given[:, 1, column], h)
+        ends = angle + 0.5 * h * np.cumsum(rates.sum(axis=1))
+        if len(ends) and np.abs(rates).max() <= most and hinge.low_rad <= ends.min() and ends.max() <= hinge.high_rad:
+            rows[:, :, slot], self._angle[hinge.name] = rates, float(ends[-1])  # no limit holds it back
+            return
         for k in range(len(rows)):
             if column is None:
                 wanted = rows[k, :, slot]
@@ -159,10 +157,11 @@ class Commands:
         time_s = step * self.inputs.step_s
         if hinge.refuses:
             unit = "rad/s" if what == "rate" else "rad"
-            raise _AtLimit(step, Refused(
+            self._ends = step
+            raise Refused(
                 "limit of a hinge", f"hinge_{what}", 0, f"{self.scene.path}: at t = {time_s:g} s: {hinge.place} "
                 f"({hinge.name}): the command asks for {value:.6g} {unit}, the limit of its {what} is {limit:.6g} "
-                f"{unit}; command less, or give at_limit = \"saturate\"", value=value, limit=limit))
+                f"{unit}; command less, or give at_limit = \"saturate\"", value=value, limit=limit)
         found = self.limited.setdefault((hinge.name, what), Limited(hinge.name, what, time_s))
         found.steps += 1
 
@@ -173,6 +172,8 @@ class Commands:
         if not steering.is_limited:
             return
         slot, h = self.vehicle.slot(TWIST), self.inputs.step_s
+        if self._steer_freely(steering, rows[:, :, slot : slot + 3], h):
+            return
         for k in range(len(rows)):
             target, now = steering.unit(rows[k, 1, slot : slot + 3]), self._twist
             if now is None or not np.any(target):
@@ -182,6 +183,23 @@ class Commands:
             for hinge, turn in zip(steering.hinges, steering.turns(now, reached), strict=True):
                 self._angle[hinge.name] += float(turn)
             self._twist = reached
+
+    def _steer_freely(self, steering: _Steering, twists: np.ndarray, h: float) -> bool:
+        """Takes all twists of some steps as they are commanded, if no limit holds one of them back."""
+        wanted = [steering.unit(twist) for twist in twists[:, 1]]
+        if self._twist is None or not all(map(np.any, wanted)):
+            return False
+        way = np.array([self._twist, *wanted])
+        turns = steering.turns(way[:-1], way[1:])
+        now = np.array([self._angle[hinge.name] for hinge in steering.hinges])
+        angles = now + np.cumsum(turns, axis=0)
+        if (np.abs(turns) > h * steering.rates).any() or (angles > steering.highs).any() or \
+                (angles < steering.lows).any():
+            return False
+        twists[:, 0], twists[:, 1], self._twist = way[:-1], way[1:], way[-1]
+        for hinge, angle in zip(steering.hinges, angles[-1], strict=True):
+            self._angle[hinge.name] = float(angle)
+        return True
 
     def _start_twist(self, steering: _Steering, given: np.ndarray) -> np.ndarray:
         """The twist at the start: the given one, or as near to it from straight ahead as the stops allow."""
@@ -246,6 +264,11 @@ class Commands:
         return hinge, "angle", angles[at], hinge.high_rad if turns[at] > 0.0 else hinge.low_rad
 
 
+def _held_rates(angle: float, targets: np.ndarray, h: float) -> np.ndarray:
+    """Rates, held over each step, that reach all targets one after the other, (steps, 2)."""
+    return np.repeat(np.diff(targets, prepend=angle)[:, None] / h, 2, axis=1)
+
+
 class _Steering:
     """How the scene's inputs make a twist, and the twist the angles of coordinated hinges."""
 
@@ -302,9 +325,10 @@ class _Steering:
         return np.asarray(scaled / np.linalg.norm(scaled * (1.0, 1.0, self._size_m)))
 
     def _directions(self, twist: np.ndarray) -> np.ndarray:
-        """Velocity at each hinge as a complex number."""
+        """Velocity at each hinge as a complex number, for one twist or many."""
         x, y = self.places.T
-        return np.asarray((twist[0] - twist[2] * y) + 1j * (twist[1] + twist[2] * x))
+        ahead, aside, yaw = (twist[..., [i]] for i in range(3))
+        return np.asarray((ahead - yaw * y) + 1j * (aside + yaw * x))
 
     def angles(self, twist: np.ndarray) -> Sequence[float]:
         """Angle of each hinge in (−π, π]."""

@@ -290,6 +290,26 @@ static void what_lies_in_the_room_for_a_prediction_changes_none(void) {
     }
 }
 
+/* White noise of density s (one-sided, N/√Hz) on a mass m: after T the variance of its velocity is s² T/(2 m²). */
+static void the_noise_of_a_force_spreads_the_velocity_with_the_root_of_the_time(void) {
+    const laconic_model m = model_of(bare_body());
+    const laconic_state at_rest = state_of(&m, start_with(0, 0, 0));
+    const laconic_input none_acts = no_input();
+    laconic_filter_settings settings;
+    laconic_integrator integrator;
+    laconic_filter filter;
+    laconic_real p[LACONIC_FILTER_OUTPUTS * LACONIC_FILTER_OUTPUTS];
+    memset(&settings, 0, sizeof settings);
+    settings.force_noise_N_per_sqrt_Hz = REAL(0.3);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&integrator, &laconic_auto, &m, REAL(0.01), NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &at_rest));
+    for (int k = 0; k < 50; k++)
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&filter, &m, &integrator, &none_acts));
+    laconic_filter_covariance(p, &filter, &m);
+    const double of_velocity = 0.3 * 0.3 * 0.5 / (2 * MASS * MASS);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5) * of_velocity, of_velocity, (double)p[0] * RADIUS * RADIUS);
+}
+
 /* Tests of factors.c: the factors of a matrix, and what counts as finite. */
 
 #define ROWS 5
@@ -362,6 +382,7 @@ static void a_covariance_is_finite_if_all_its_numbers_are(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(the_noise_of_a_force_spreads_the_velocity_with_the_root_of_the_time);
     RUN_TEST(a_velocity_is_corrected_up_to_the_largest_in_any_direction);
     RUN_TEST(a_correction_is_judged_by_where_it_leads);
     RUN_TEST(without_encoders_a_velocity_is_corrected_up_to_the_largest_too);

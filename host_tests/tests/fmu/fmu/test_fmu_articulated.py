@@ -177,6 +177,21 @@ def test_a_command_that_jumps_in_event_mode_keeps_the_momenta(version: int, tmp_
 
 
 @BOTH
+def test_a_rate_at_the_start_moves_a_loader_that_stood(version: int, tmp_path: Path) -> None:
+    scene = read_scene("wheel_loader").with_run(real="double")
+    with Importer(make_fmu(scene, tmp_path / "scene.fmu", version=version)) as importer:
+        importer.enter_initialization()
+        assert importer.set("steering_rate_rad_per_s", 0.2) == OK
+        importer.must("ExitInitializationMode")
+        plant = plant_of(scene, importer)
+        row = plant.vehicle.input_row({f"steering_rate_rad_per_s[{scene.hinges[0].name}]": 0.2})
+        assert importer.step(0.0, scene.run.step_s) == OK
+        plant.run(row)
+        assert abs(importer.get("yaw_rate_rad_per_s")[0]) > 0.01
+        assert values_of(importer, OF_MOTION) == pytest.approx(motion_of(plant), rel=1e-12, abs=1e-15)
+
+
+@BOTH
 def test_an_input_that_has_no_effect_is_logged_once(version: int) -> None:
     with Importer(generic(version)) as importer:
         importer.initialize()
@@ -337,3 +352,60 @@ def test_the_command_writes_it_and_states_what_is_left_out(tmp_path: Path, capsy
 def test_what_such_an_fmu_lacks_is_refused_by_one_line(option: str, tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=rf"^{option}: the FMU of a vehicle with hinges \(.*\) has no such variant yet"):
         make_fmu(read_scene("mir_like"), tmp_path / "x.fmu", version=2, **{option: True})
+
+
+def test_an_ssp_archive_is_refused_by_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["fmu", "f1tenth", "--fmi", "2", "--ssp", "-o", str(tmp_path / "x.ssp")]) == 2
+    assert "ssp: the FMU of a vehicle with hinges" in capsys.readouterr().err
+    assert not (tmp_path / "x.ssp").exists()
+
+
+def in_ecos(fmu: Path, given: dict[str, float], names: list[str], steps: int, step_s: float) -> list[float]:
+    import ecospy
+
+    with ecospy.EcosSimulationStructure() as structure:
+        structure.add_model("vehicle", str(fmu))
+        structure.add_parameter_set("drive", {f"vehicle::{name}": value for name, value in given.items()})
+        with ecospy.EcosSimulation(structure=structure, step_size=step_s) as simulation:
+            simulation.init(parameter_set="drive")
+            simulation.step(steps)
+            ends = [simulation.get_real(f"vehicle::{name}") for name in names]
+            simulation.terminate()
+    return ends
+
+
+def in_libcosim(fmu: Path, given: dict[str, float], names: list[str], steps: int, step_s: float) -> list[float]:
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    execution = CosimExecution.from_step_size(step_size=int(step_s * 1e9))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=str(fmu), instance_name="vehicle"))
+    observer = CosimObserver.create_last_value()
+    assert execution.add_observer(observer)
+    reference = {each.name.decode(): each.reference for each in execution.slave_variables(slave)}
+    for name, value in given.items():
+        assert execution.real_initial_value(slave, reference[name], value)
+    execution.step(steps)
+    return list(observer.last_real_values(slave, [reference[name] for name in names]))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("scene_name", ["f1tenth", "frc_swerve_mk4i"])
+@pytest.mark.parametrize(("package", "run_in"), [("ecospy", in_ecos), ("libcosimpy", in_libcosim)])
+def test_a_car_and_a_swerve_run_in_other_importers(scene_name: str, package: str, run_in: Any, tmp_path: Path) -> None:
+    pytest.importorskip(package)
+    scene = read_scene(scene_name).with_run(real="double", step_s=0.01)
+    fmu = make_fmu(scene, tmp_path / "scene.fmu", version=2, enumerations=False)
+    given = {f"voltage_V[{i + 1}]": 3.0 for i in range(scene.wheel_count)} | {"steering_twist_rate[3]": 0.2}
+    with Importer(fmu) as importer:
+        names = ["x_m", "y_m", "heading_rad", *importer.elements("hinge_rad")[0]]
+        names += importer.elements("wheel_angle_rad")[0]
+        importer.enter_initialization()
+        importer.must("SetReal", importer.references(*given), len(given), list(given.values()))
+        importer.must("ExitInitializationMode")
+        for k in range(50):
+            assert importer.step(k * 0.01, 0.01) == OK
+        expected = [importer.get(name)[0] for name in names]
+    assert max(map(abs, expected)) > 0.1
+    assert run_in(fmu, given, names, 50, 0.01) == pytest.approx(expected, rel=1e-6, abs=1e-9)

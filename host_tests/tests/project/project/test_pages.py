@@ -156,9 +156,10 @@ def test_every_command_and_each_of_its_options_is_in_the_reference_of_commands(p
 
 
 def test_every_variable_of_the_fmus_and_every_frame_of_the_wire_is_in_a_reference(pages: Path) -> None:
-    root = ElementTree.parse(SOURCE_DIR / "modelDescription.xml").getroot()
     fmi, wire = text(pages, "reference-fmi"), text(pages, "wire")
-    assert all(f"`{each.get('name')}" in fmi for each in root.iterfind(".//ModelVariables/*"))
+    for name in ("modelDescription.xml", "fmu/articulated/modelDescription.xml"):
+        root = ElementTree.parse(SOURCE_DIR / name).getroot()
+        assert all(f"`{each.get('name')}" in fmi for each in root.iterfind(".//ModelVariables/*"))
     frames = cantools.database.load_file(str(SOURCE_DIR / "firmware_stub/laconic.dbc")).messages
     assert len(frames) > 20 and [each.name for each in frames if each.name not in wire] == []
 
