@@ -1,0 +1,134 @@
+/* The equations of a pass, (1 + Σ rowsᵀ S rows) δν = rest, eliminated from leaf to root. */
+#include "tree_solver.h"
+
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+
+INLINE void tree_unit_matrix(tree_matrix *k, const tree_model *m) {
+    for (int32_t j = 0; j < m->body_count; j++) {
+        tree_row *node = &k->node[j];
+        const int32_t own = m->body[j + 1].depth - 1;
+        node->base = none;
+        for (int32_t i = 0; i < own; i++) node->along[i] = R(0);
+        node->along[own] = R(1);
+    }
+    k->xx = k->yy = k->zz = R(1);
+    k->xy = k->xz = k->yz = R(0);
+}
+
+/* Adds first secondᵀ, one of a sum that is symmetric. */
+INLINE void tree_add_product(tree_matrix *k, const tree_row *first, const tree_row *second, const tree_body *on) {
+    const vector a = first->base, b = second->base;
+    k->xx += a.x * b.x;
+    k->xy += a.x * b.y;
+    k->xz += a.x * b.z;
+    k->yy += a.y * b.y;
+    k->yz += a.y * b.z;
+    k->zz += a.z * b.z;
+    for (int32_t i = 0; i < on->depth; i++) {
+        tree_row *node = &k->node[on->path[i]];
+        const real share = first->along[i];
+        node->base = plus(node->base, scaled(share, b));
+        for (int32_t l = 0; l <= i; l++) node->along[l] += share * second->along[l];
+    }
+}
+
+INLINE void tree_combine(tree_row *out, const tree_row rows[2], real first, real second, int32_t depth) {
+    out->base = plus(scaled(first, rows[0].base), scaled(second, rows[1].base));
+    for (int32_t k = 0; k < depth; k++) out->along[k] = first * rows[0].along[k] + second * rows[1].along[k];
+}
+
+INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, const tree_law *law) {
+    tree_row part;
+    tree_subtract(rest, &c->row[0], law->impulse[0], c->on);
+    tree_subtract(rest, &c->row[1], law->impulse[1], c->on);
+    tree_combine(&part, c->row, law->xx, law->xy, c->on->depth);
+    tree_add_product(k, &c->row[0], &part, c->on);
+    tree_combine(&part, c->row, law->xy, law->yy, c->on->depth);
+    tree_add_product(k, &c->row[1], &part, c->on);
+}
+
+INLINE void tree_add_element(tree_matrix *k, tree_vector *rest, const tree_element *e, const tree_element_law *law) {
+    tree_row part;
+    tree_subtract(rest, e->row, law->q, e->on);
+    if (law->stiffness == R(0)) return;
+    part.base = scaled(law->stiffness, e->row->base);
+    for (int32_t i = 0; i < e->on->depth; i++) part.along[i] = law->stiffness * e->row->along[i];
+    tree_add_product(k, &part, e->row, e->on);
+}
+
+/* Takes hinge j out of the equations of those before it. */
+INLINE void tree_take_out(tree_matrix *k, tree_vector *x, real inverse[], const tree_body *link, int32_t j) {
+    const tree_row *node = &k->node[j];
+    const int32_t own = link->depth - 1;
+    const real d = inverse[j] = R(1) / pivot(node->along[own]), r = x->hinge[j];
+    const vector b = node->base, share = scaled(d, b);
+    for (int32_t i = 0; i < own; i++) {
+        const real f = node->along[i] * d;
+        tree_row *on = &k->node[link->path[i]];
+        on->base = minus(on->base, scaled(f, b));
+        for (int32_t l = 0; l <= i; l++) on->along[l] -= f * node->along[l];
+        x->hinge[link->path[i]] -= f * r;
+    }
+    k->xx -= share.x * b.x;
+    k->xy -= share.x * b.y;
+    k->xz -= share.x * b.z;
+    k->yy -= share.y * b.y;
+    k->yz -= share.y * b.z;
+    k->zz -= share.z * b.z;
+    x->base = minus(x->base, scaled(r, share));
+}
+
+INLINE vector tree_solved_base(const tree_matrix *k, vector rest) {
+    equations e;
+    e.rest = rest;
+    e.xx = pivot(k->xx);
+    e.xy = k->xy;
+    e.xz = k->xz;
+    e.yy = k->yy;
+    e.yz = k->yz;
+    e.zz = k->zz;
+    return solved(&e);
+}
+
+INLINE void tree_solve_equations(tree_matrix *k, tree_vector *x, const tree_model *m) {
+    real inverse[TREE_HINGES];
+    for (int32_t j = m->body_count - 1; j >= 0; j--) tree_take_out(k, x, inverse, &m->body[j + 1], j);
+    x->base = tree_solved_base(k, x->base);
+    for (int32_t j = 0; j < m->body_count; j++) {
+        const tree_body *link = &m->body[j + 1];
+        const tree_row *node = &k->node[j];
+        real rest = x->hinge[j] - dot(node->base, x->base);
+        for (int32_t i = 0; i < link->depth - 1; i++) rest -= node->along[i] * x->hinge[link->path[i]];
+        x->hinge[j] = rest * inverse[j];
+    }
+}
+
+static void tree_difference(tree_vector *rest, const tree_problem *p) {
+    rest->base = minus(p->free.base, p->nu.base);
+    for (int32_t j = 0; j < p->m->body_count; j++) rest->hinge[j] = p->free.hinge[j] - p->nu.hinge[j];
+}
+
+void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by) {
+    tree_matrix k;
+    tree_unit_matrix(&k, p->m);
+    tree_difference(by, p);
+    for (int32_t i = 0; i < p->contact_count; i++) tree_add_contact(&k, by, &p->contact[i], &laws[i]);
+    for (int32_t i = 0; i < p->element_count; i++) tree_add_element(&k, by, &p->element[i], &elements[i]);
+    tree_solve_equations(&k, by, p->m);
+    tree_add(&p->nu, by, p->m->body_count);
+}
+
+void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p) {
+    tree_difference(rest, p);
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        const tree_contact *c = &p->contact[i];
+        tree_subtract(rest, &c->row[0], c->impulse[0], c->on);
+        tree_subtract(rest, &c->row[1], c->impulse[1], c->on);
+    }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const tree_element *e = &p->element[i];
+        tree_subtract(rest, e->row, e->q, e->on);
+    }
+}
+
+#endif
