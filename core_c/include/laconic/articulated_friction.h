@@ -162,6 +162,7 @@ typedef struct laconic_tree_model {
     laconic_tree_rim wheel[LACONIC_MAX_WHEELS];
     laconic_tree_motor motor[LACONIC_TREE_AXES]; /* of wheel i, then of hinge b at wheel_count + b − 1       */
     laconic_real support_m[LACONIC_MAX_SUPPORTS][2];
+    bool star;                                   /* every hinge is on body 0                                  */
     bool loads_given, sloped, controlled;
     laconic_real gravity_m_per_s2;               /* across the ground                                         */
     laconic_real pull_m_per_s2[2];               /* of the slope, world axes                                  */

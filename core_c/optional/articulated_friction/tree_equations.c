@@ -3,10 +3,10 @@
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
-INLINE void tree_unit_matrix(tree_matrix *k, const tree_model *m) {
+INLINE void tree_unit_matrix(tree_matrix *k, const tree_model *m, bool star) {
     for (int32_t j = 0; j < m->body_count; j++) {
         tree_row *node = &k->node[j];
-        const int32_t own = m->body[j + 1].depth - 1;
+        const int32_t own = star ? 0 : m->body[j + 1].depth - 1;
         node->base = none;
         for (int32_t i = 0; i < own; i++) node->along[i] = R(0);
         node->along[own] = R(1);
@@ -16,7 +16,8 @@ INLINE void tree_unit_matrix(tree_matrix *k, const tree_model *m) {
 }
 
 /* Adds first secondᵀ, one of a sum that is symmetric. */
-INLINE void tree_add_product(tree_matrix *k, const tree_row *first, const tree_row *second, const tree_body *on) {
+INLINE void tree_add_product(tree_matrix *k, const tree_row *first, const tree_row *second, const tree_body *on,
+                             bool star) {
     const vector a = first->base, b = second->base;
     k->xx += a.x * b.x;
     k->xy += a.x * b.y;
@@ -24,12 +25,18 @@ INLINE void tree_add_product(tree_matrix *k, const tree_row *first, const tree_r
     k->yy += a.y * b.y;
     k->yz += a.y * b.z;
     k->zz += a.z * b.z;
-    for (int32_t i = 0; i < on->depth; i++) {
+    for (int32_t i = 0; i < tree_depth(on, star); i++) {
         tree_row *node = &k->node[on->path[i]];
         const real share = first->along[i];
         node->base = plus(node->base, scaled(share, b));
-        for (int32_t l = 0; l <= i; l++) node->along[l] += share * second->along[l];
+        node->along[i] += share * second->along[i];
+        for (int32_t l = 0; l < i && !star; l++) node->along[l] += share * second->along[l];
     }
+}
+
+INLINE void tree_scale(tree_row *out, const tree_row *row, real by, int32_t depth) {
+    out->base = scaled(by, row->base);
+    for (int32_t k = 0; k < depth; k++) out->along[k] = by * row->along[k];
 }
 
 INLINE void tree_combine(tree_row *out, const tree_row rows[2], real first, real second, int32_t depth) {
@@ -37,29 +44,44 @@ INLINE void tree_combine(tree_row *out, const tree_row rows[2], real first, real
     for (int32_t k = 0; k < depth; k++) out->along[k] = first * rows[0].along[k] + second * rows[1].along[k];
 }
 
-INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, const tree_law *law) {
-    tree_row part;
-    tree_subtract(rest, &c->row[0], law->impulse[0], c->on);
-    tree_subtract(rest, &c->row[1], law->impulse[1], c->on);
-    tree_combine(&part, c->row, law->xx, law->xy, c->on->depth);
-    tree_add_product(k, &c->row[0], &part, c->on);
-    tree_combine(&part, c->row, law->xy, law->yy, c->on->depth);
-    tree_add_product(k, &c->row[1], &part, c->on);
+INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, const tree_law *law, bool star) {
+    const int32_t depth = tree_depth(c->on, star);
+    tree_row part[2];
+    tree_subtract(rest, &c->row[0], law->impulse[0], c->on, star);
+    tree_subtract(rest, &c->row[1], law->impulse[1], c->on, star);
+    if (law->xy == R(0)) { /* most wheels that roll */
+        tree_scale(&part[0], &c->row[0], law->xx, depth);
+        tree_scale(&part[1], &c->row[1], law->yy, depth);
+    } else {
+        tree_combine(&part[0], c->row, law->xx, law->xy, depth);
+        tree_combine(&part[1], c->row, law->xy, law->yy, depth);
+    }
+    tree_add_product(k, &part[0], &c->row[0], c->on, star);
+    tree_add_product(k, &part[1], &c->row[1], c->on, star);
 }
 
-INLINE void tree_add_element(tree_matrix *k, tree_vector *rest, const tree_element *e, const tree_element_law *law) {
+/* All elements of one row together. Returns the number of the next one. */
+INLINE int32_t tree_add_elements(tree_matrix *k, tree_vector *rest, const tree_problem *p,
+                                 const tree_element_law laws[], int32_t first, bool star) {
+    const tree_element *e = &p->element[first];
+    real q = laws[first].q, stiffness = laws[first].stiffness;
+    int32_t next = first + 1;
     tree_row part;
-    tree_subtract(rest, e->row, law->q, e->on);
-    if (law->stiffness == R(0)) return;
-    part.base = scaled(law->stiffness, e->row->base);
-    for (int32_t i = 0; i < e->on->depth; i++) part.along[i] = law->stiffness * e->row->along[i];
-    tree_add_product(k, &part, e->row, e->on);
+    for (; next < p->element_count && p->element[next].row == e->row; next++) {
+        q += laws[next].q;
+        stiffness += laws[next].stiffness;
+    }
+    tree_subtract(rest, e->row, q, e->on, star);
+    if (stiffness == R(0)) return next;
+    tree_scale(&part, e->row, stiffness, tree_depth(e->on, star));
+    tree_add_product(k, &part, e->row, e->on, star);
+    return next;
 }
 
 /* Takes hinge j out of the equations of those before it. */
-INLINE void tree_take_out(tree_matrix *k, tree_vector *x, real inverse[], const tree_body *link, int32_t j) {
+INLINE void tree_take_out(tree_matrix *k, tree_vector *x, real inverse[], const tree_body *link, int32_t j, bool star) {
     const tree_row *node = &k->node[j];
-    const int32_t own = link->depth - 1;
+    const int32_t own = star ? 0 : link->depth - 1;
     const real d = inverse[j] = R(1) / pivot(node->along[own]), r = x->hinge[j];
     const vector b = node->base, share = scaled(d, b);
     for (int32_t i = 0; i < own; i++) {
@@ -90,45 +112,68 @@ INLINE vector tree_solved_base(const tree_matrix *k, vector rest) {
     return solved(&e);
 }
 
-INLINE void tree_solve_equations(tree_matrix *k, tree_vector *x, const tree_model *m) {
+INLINE void tree_solve_equations(tree_matrix *k, tree_vector *x, const tree_model *m, bool star) {
     real inverse[TREE_HINGES];
-    for (int32_t j = m->body_count - 1; j >= 0; j--) tree_take_out(k, x, inverse, &m->body[j + 1], j);
+    for (int32_t j = m->body_count - 1; j >= 0; j--) tree_take_out(k, x, inverse, &m->body[j + 1], j, star);
     x->base = tree_solved_base(k, x->base);
     for (int32_t j = 0; j < m->body_count; j++) {
         const tree_body *link = &m->body[j + 1];
         const tree_row *node = &k->node[j];
         real rest = x->hinge[j] - dot(node->base, x->base);
-        for (int32_t i = 0; i < link->depth - 1; i++) rest -= node->along[i] * x->hinge[link->path[i]];
+        for (int32_t i = 0; i < link->depth - 1 && !star; i++) rest -= node->along[i] * x->hinge[link->path[i]];
         x->hinge[j] = rest * inverse[j];
     }
 }
 
-static void tree_difference(tree_vector *rest, const tree_problem *p) {
+INLINE void tree_difference(tree_vector *rest, const tree_problem *p) {
     rest->base = minus(p->free.base, p->nu.base);
     for (int32_t j = 0; j < p->m->body_count; j++) rest->hinge[j] = p->free.hinge[j] - p->nu.hinge[j];
 }
 
-void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by) {
+INLINE void tree_move_on(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by,
+                         bool star) {
     tree_matrix k;
-    tree_unit_matrix(&k, p->m);
+    tree_unit_matrix(&k, p->m, star);
     tree_difference(by, p);
-    for (int32_t i = 0; i < p->contact_count; i++) tree_add_contact(&k, by, &p->contact[i], &laws[i]);
-    for (int32_t i = 0; i < p->element_count; i++) tree_add_element(&k, by, &p->element[i], &elements[i]);
-    tree_solve_equations(&k, by, p->m);
+    for (int32_t i = 0; i < p->contact_count; i++) tree_add_contact(&k, by, &p->contact[i], &laws[i], star);
+    for (int32_t i = 0; i < p->element_count;) i = tree_add_elements(&k, by, p, elements, i, star);
+    tree_solve_equations(&k, by, p->m, star);
     tree_add(&p->nu, by, p->m->body_count);
 }
 
-void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p) {
+RARE void tree_move_deep(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by) {
+    tree_move_on(p, laws, elements, by, false);
+}
+
+void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by) {
+    if (p->m->star)
+        tree_move_on(p, laws, elements, by, true);
+    else
+        tree_move_deep(p, laws, elements, by);
+}
+
+INLINE void tree_imbalance_on(tree_vector *rest, const tree_problem *p, bool star) {
     tree_difference(rest, p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
-        tree_subtract(rest, &c->row[0], c->impulse[0], c->on);
-        tree_subtract(rest, &c->row[1], c->impulse[1], c->on);
+        tree_subtract(rest, &c->row[0], c->impulse[0], c->on, star);
+        tree_subtract(rest, &c->row[1], c->impulse[1], c->on, star);
     }
-    for (int32_t i = 0; i < p->element_count; i++) {
+    for (int32_t i = 0; i < p->element_count;) {
         const tree_element *e = &p->element[i];
-        tree_subtract(rest, e->row, e->q, e->on);
+        real q = R(0);
+        for (; i < p->element_count && p->element[i].row == e->row; i++) q += p->element[i].q;
+        tree_subtract(rest, e->row, q, e->on, star);
     }
+}
+
+RARE void tree_imbalance_deep(tree_vector *rest, const tree_problem *p) { tree_imbalance_on(rest, p, false); }
+
+void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p) {
+    if (p->m->star)
+        tree_imbalance_on(rest, p, true);
+    else
+        tree_imbalance_deep(rest, p);
 }
 
 #endif

@@ -100,8 +100,8 @@ static void tree_soften_wheel(tree_law *law, tree_soft *restrict s, real *fall, 
                               const tree_path *path) {
     const tree_contact *c = &p->contact[i];
     const real *rim = c->wheel->rim, size = c->wheel->rim_size;
-    const real slip[2] = {tree_dot(&c->row[0], c->on, &p->nu) - rim[0] * c->speed,
-                          tree_dot(&c->row[1], c->on, &p->nu) - rim[1] * c->speed};
+    const real slip[2] = {tree_dot(&c->row[0], c->on, &p->nu, false) - rim[0] * c->speed,
+                          tree_dot(&c->row[1], c->on, &p->nu, false) - rim[1] * c->speed};
     s->xx = s->xy = s->yy = s->impulse[0] = s->impulse[1] = s->axle = s->axle_growth = R(0);
     if (c->load.grip > R(0)) tree_soften_contact(s, fall, c, slip, path);
     if (c->load.axle > R(0))
@@ -127,7 +127,7 @@ static void tree_soften_stop(tree_element_law *law, real *fall, const tree_eleme
 
 static void tree_soften_element(tree_element_law *law, real *fall, const tree_element *e, const tree_vector *nu,
                                 const tree_path *path) {
-    const real away = tree_dot(e->row, e->on, nu) - e->target;
+    const real away = tree_dot(e->row, e->on, nu, false) - e->target;
     if (tree_unbounded(e)) {
         const real penalty = PENALTY / e->mobility, soft = R(1) + penalty * e->compliance;
         law->stiffness = penalty / soft;
@@ -156,7 +156,7 @@ RARE void tree_put_inside(real p[2], real grip) {
 }
 
 static void tree_move_softly(tree_contact *c, const tree_soft *s, tree_path *path, int32_t i, const tree_vector *by) {
-    const real x = tree_dot(&c->row[0], c->on, by), y = tree_dot(&c->row[1], c->on, by);
+    const real x = tree_dot(&c->row[0], c->on, by, false), y = tree_dot(&c->row[1], c->on, by, false);
     const real turned = s->excess + s->turn[0] * x + s->turn[1] * y;
     const real slip[2] = {x - c->wheel->rim[0] * turned, y - c->wheel->rim[1] * turned};
     c->speed += turned;
@@ -181,7 +181,7 @@ void laconic_tree_follow_path(tree_problem *p, tree_path *path) {
     for (int32_t i = 0; i < p->contact_count; i++) tree_move_softly(&p->contact[i], &wheels[i], path, i, &by);
     for (int32_t i = 0; i < p->element_count; i++) {
         tree_element *e = &p->element[i];
-        e->q = tree_boxed(elements[i].q + elements[i].stiffness * tree_dot(e->row, e->on, &by), e->low, e->high);
+        e->q = tree_boxed(elements[i].q + elements[i].stiffness * tree_dot(e->row, e->on, &by, false), e->low, e->high);
     }
     path->softness *= fall;
     if (path->softness < least) path->softness = least;

@@ -50,21 +50,25 @@ typedef struct tree_factor {
 
 /* ------------------------------------------------------------------------------- rows on paths -- */
 
-static inline real tree_dot(const tree_row *row, const tree_body *on, const tree_vector *x) {
+/* Hinges on the path of a body. `star`: all hinges are on body 0, as of most vehicles; given as a constant, it turns
+ * loops along paths into one step at most. */
+INLINE int32_t tree_depth(const tree_body *on, bool star) { return star ? (int32_t)(on->depth > 0) : on->depth; }
+
+INLINE real tree_dot(const tree_row *row, const tree_body *on, const tree_vector *x, bool star) {
     real sum = dot(row->base, x->base);
-    for (int32_t k = 0; k < on->depth; k++) sum += row->along[k] * x->hinge[on->path[k]];
+    for (int32_t k = 0; k < tree_depth(on, star); k++) sum += row->along[k] * x->hinge[on->path[k]];
     return sum;
 }
 
-static inline real tree_row_product(const tree_row *a, const tree_row *b, const tree_body *on) {
+INLINE real tree_row_product(const tree_row *a, const tree_row *b, const tree_body *on, bool star) {
     real sum = dot(a->base, b->base);
-    for (int32_t k = 0; k < on->depth; k++) sum += a->along[k] * b->along[k];
+    for (int32_t k = 0; k < tree_depth(on, star); k++) sum += a->along[k] * b->along[k];
     return sum;
 }
 
-static inline void tree_subtract(tree_vector *from, const tree_row *row, real times_row, const tree_body *on) {
+INLINE void tree_subtract(tree_vector *from, const tree_row *row, real times_row, const tree_body *on, bool star) {
     from->base = minus(from->base, scaled(times_row, row->base));
-    for (int32_t k = 0; k < on->depth; k++) from->hinge[on->path[k]] -= times_row * row->along[k];
+    for (int32_t k = 0; k < tree_depth(on, star); k++) from->hinge[on->path[k]] -= times_row * row->along[k];
 }
 
 static inline void tree_add(tree_vector *to, const tree_vector *x, int32_t hinges) {
@@ -190,14 +194,15 @@ static inline vector tree_back_base(const tree_factor *f, vector v) {
 }
 
 /* row := L⁻ᵀ row */
-static inline void tree_back_row(tree_row *row, const tree_factor *f, const tree_body *on) {
-    for (int32_t k = on->depth - 1; k >= 0; k--) {
+INLINE void tree_back_row(tree_row *row, const tree_factor *f, const tree_body *on, bool star) {
+    for (int32_t above = 0, k; above < tree_depth(on, star); above++) {
+        k = tree_depth(on, star) - 1 - above;
         const int32_t j = on->path[k];
         const tree_row *node = &f->l.node[j];
         const real share = row->along[k] * f->inverse[j];
         row->along[k] = share;
         row->base = minus(row->base, scaled(share, node->base));
-        for (int32_t i = 0; i < k; i++) row->along[i] -= share * node->along[i];
+        for (int32_t i = 0; i < k && !star; i++) row->along[i] -= share * node->along[i];
     }
     row->base = tree_back_base(f, row->base);
 }

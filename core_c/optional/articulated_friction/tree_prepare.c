@@ -209,7 +209,9 @@ static bool tree_in_range(const laconic_tree_model *m) {
 }
 
 static void tree_sum_up(laconic_tree_model *m) {
+    m->star = true;
     for (int32_t b = 0; b <= m->body_count; b++) {
+        m->star = m->star && m->body[b].depth <= 1;
         m->mass_kg += m->body[b].mass_kg;
         m->controlled = m->controlled || m->body[b].sampled;
     }

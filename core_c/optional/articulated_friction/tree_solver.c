@@ -34,6 +34,9 @@
 #define TREE_AHEAD 3
 #define TREE_TRIED 3
 #define TREE_WORTH_IT R(0.1)
+#define TREE_MOST_STRESSES 3
+#define TREE_FARTHEST R(1e12) /* of the change in one pass */
+#define TREE_ALMOST (R(1e2) * TREE_TOLERANCE)
 
 /* What a pass sees of a contact, and of an element. */
 typedef struct tree_sight {
@@ -55,18 +58,46 @@ typedef struct tree_search {
 
 static real tree_inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
-void laconic_tree_prepare_contact(tree_contact *c) {
+INLINE void tree_prepare_contact(tree_contact *c, bool star) {
     const real *e = c->wheel->rolling;
-    c->along = tree_row_product(&c->row[0], &c->row[0], c->on);
-    c->cross_row = tree_row_product(&c->row[0], &c->row[1], c->on);
-    c->across = tree_row_product(&c->row[1], &c->row[1], c->on);
+    c->along = tree_row_product(&c->row[0], &c->row[0], c->on, star);
+    c->cross_row = tree_row_product(&c->row[0], &c->row[1], c->on, star);
+    c->across = tree_row_product(&c->row[1], &c->row[1], c->on, star);
     c->row_mass[0] = tree_inverse_or_zero(c->along);
     c->row_mass[1] = tree_inverse_or_zero(c->across);
     c->mobility = c->along + c->across + c->wheel->rim_size * c->wheel->rim_size / c->wheel->inertia_kgm2;
+    c->inverse_mobility = R(1) / c->mobility;
     c->lateral_mass = c->row_mass[1];
     if (e[1] == R(0)) return;
     c->lateral_mass =
         tree_inverse_or_zero(e[1] * e[1] * c->along - R(2) * e[0] * e[1] * c->cross_row + e[0] * e[0] * c->across);
+}
+
+static void tree_prepare_element(tree_element *e) {
+    const real penalty = PENALTY / e->mobility;
+    e->all = e->mobility + e->compliance;
+    e->inverse_all = R(1) / e->all;
+    e->share = R(1) / (R(1) + penalty * e->compliance);
+    e->stiffness = penalty * e->share;
+}
+
+INLINE void tree_prepare_all(tree_problem *p, bool star) {
+    for (int32_t i = 0; i < p->contact_count; i++) tree_prepare_contact(&p->contact[i], star);
+    for (int32_t i = 0; i < p->element_count; i++) {
+        tree_element *e = &p->element[i];
+        const bool again = i > 0 && p->element[i - 1].row == e->row;
+        e->mobility = again ? p->element[i - 1].mobility : tree_row_product(e->row, e->row, e->on, star);
+        tree_prepare_element(e);
+    }
+}
+
+RARE void tree_prepare_deep(tree_problem *p) { tree_prepare_all(p, false); }
+
+void laconic_tree_prepare_problem(tree_problem *p) {
+    if (p->m->star)
+        tree_prepare_all(p, true);
+    else
+        tree_prepare_deep(p);
 }
 
 /* --------------------------------------------------------------------------------- what a pass sees -- */
@@ -90,12 +121,12 @@ INLINE void tree_see_axle(tree_sight *restrict s, const tree_contact *c) {
 }
 
 /* Returns the square of the contact's residual. */
-INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_vector *nu) {
+INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_vector *nu, bool star) {
     const real *rim = c->wheel->rim, *e = c->wheel->rolling, *p = c->impulse, grip = c->load.grip;
     real inside = R(1), off[2], size;
     for (int m = 0; m < 2; m++) {
-        s->moved[m] = tree_dot(&c->row[m], c->on, nu);
-        off[m] = (s->moved[m] - rim[m] * c->speed) / c->mobility;
+        s->moved[m] = tree_dot(&c->row[m], c->on, nu, star);
+        off[m] = (s->moved[m] - rim[m] * c->speed) * c->inverse_mobility;
         s->t[m] = p[m] + off[m];
     }
     s->length = s->firm = R(0);
@@ -120,27 +151,37 @@ INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_v
     return s->rest + s->firm;
 }
 
-/* The same of an element; its law for the pass follows at once. */
-INLINE real tree_see_element(tree_element_law *restrict law, bool *inside, const tree_element *e,
-                             const tree_vector *nu) {
-    const real away = tree_dot(e->row, e->on, nu) - e->target, all = e->mobility + e->compliance;
-    const real off = (away - e->compliance * e->q) / all, t = e->q + off;
-    const real penalty = PENALTY / e->mobility, soft = R(1) + penalty * e->compliance;
+/* The same of an element with x; its law for the pass follows at once. */
+INLINE real tree_see_element(tree_element_law *restrict law, bool *inside, const tree_element *e, real x) {
+    const real away = x - e->target, off = (away - e->compliance * e->q) * e->inverse_all, t = e->q + off;
+    real change = off;
     *inside = t > e->low && t < e->high;
-    law->stiffness = *inside ? penalty / soft : R(0);
-    law->q = *inside ? (e->q + penalty * away) / soft : (t >= e->high ? e->high : e->low);
-    const real change = *inside ? off : tree_boxed(t, e->low, e->high) - e->q;
-    return (change * change + TREE_HIDDEN * TREE_HIDDEN * e->q * e->q) * all;
+    if (*inside) {
+        law->stiffness = e->stiffness;
+        law->q = e->share * e->q + e->stiffness * away;
+    } else {
+        law->stiffness = R(0);
+        law->q = t >= e->high ? e->high : e->low;
+        change = law->q - e->q;
+    }
+    return (change * change + TREE_HIDDEN * TREE_HIDDEN * e->q * e->q) * e->all;
 }
 
-static real tree_see_all(tree_search *at) {
-    tree_problem *p = at->p;
-    real residual = R(0);
-    for (int32_t i = 0; i < p->contact_count; i++) residual += tree_see(&at->sight[i], &p->contact[i], &p->nu);
-    for (int32_t i = 0; i < p->element_count; i++)
-        residual += tree_see_element(&at->element[i], &at->inside[i], &p->element[i], &p->nu);
+INLINE real tree_see_everything(tree_search *at, bool star) {
+    const tree_problem *p = at->p;
+    real residual = R(0), x = R(0);
+    for (int32_t i = 0; i < p->contact_count; i++) residual += tree_see(&at->sight[i], &p->contact[i], &p->nu, star);
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const tree_element *e = &p->element[i];
+        if (i == 0 || e[-1].row != e->row) x = tree_dot(e->row, e->on, &p->nu, star);
+        residual += tree_see_element(&at->element[i], &at->inside[i], e, x);
+    }
     return residual;
 }
+
+RARE real tree_see_deep(tree_search *at) { return tree_see_everything(at, false); }
+
+static real tree_see_all(tree_search *at) { return at->p->m->star ? tree_see_everything(at, true) : tree_see_deep(at); }
 
 /* ------------------------------------------------------------------------------- laws of an exact pass -- */
 
@@ -208,33 +249,47 @@ INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_c
     law->yy = k * e[1] * e[1] + side * e[0] * e[0];
 }
 
+static void tree_take_law(tree_law *law, const tree_sight *s, const tree_contact *c) {
+    if (s->length > R(0))
+        tree_slips(law, s, c);
+    else if (s->locked)
+        tree_stays_locked(law, s, c);
+    else
+        tree_rolls(law, s, c);
+}
+
+INLINE void tree_move_contact(tree_contact *c, const tree_law *law, const tree_vector *by, bool star) {
+    const real x = tree_dot(&c->row[0], c->on, by, star), y = tree_dot(&c->row[1], c->on, by, star);
+    c->impulse[0] = law->impulse[0] + law->xx * x + law->xy * y;
+    c->impulse[1] = law->impulse[1] + law->xy * x + law->yy * y;
+    c->speed = law->speed + law->turn[0] * x + law->turn[1] * y;
+}
+
+INLINE void tree_move_all(tree_search *at, const tree_law laws[], const tree_vector *by, bool star) {
+    tree_problem *p = at->p;
+    real x = R(0);
+    for (int32_t i = 0; i < p->contact_count; i++) tree_move_contact(&p->contact[i], &laws[i], by, star);
+    for (int32_t i = 0; i < p->element_count; i++) {
+        tree_element *e = &p->element[i];
+        if (i == 0 || e[-1].row != e->row) x = tree_dot(e->row, e->on, by, star);
+        e->q = at->element[i].q + at->element[i].stiffness * x;
+    }
+}
+
+RARE void tree_move_all_deep(tree_search *at, const tree_law laws[], const tree_vector *by) {
+    tree_move_all(at, laws, by, false);
+}
+
 static void tree_exact_pass(tree_search *at) {
     tree_problem *p = at->p;
     tree_law laws[TREE_WHEELS];
     tree_vector by;
-    for (int32_t i = 0; i < p->contact_count; i++) {
-        const tree_sight *s = &at->sight[i];
-        if (s->length > R(0))
-            tree_slips(&laws[i], s, &p->contact[i]);
-        else if (s->locked)
-            tree_stays_locked(&laws[i], s, &p->contact[i]);
-        else
-            tree_rolls(&laws[i], s, &p->contact[i]);
-    }
+    for (int32_t i = 0; i < p->contact_count; i++) tree_take_law(&laws[i], &at->sight[i], &p->contact[i]);
     laconic_tree_move(p, laws, at->element, &by);
-    for (int32_t i = 0; i < p->contact_count; i++) {
-        tree_contact *c = &p->contact[i];
-        const tree_law *law = &laws[i];
-        const real x = tree_dot(&c->row[0], c->on, &by), y = tree_dot(&c->row[1], c->on, &by);
-        c->impulse[0] = law->impulse[0] + law->xx * x + law->xy * y;
-        c->impulse[1] = law->impulse[1] + law->xy * x + law->yy * y;
-        c->speed = law->speed + law->turn[0] * x + law->turn[1] * y;
-    }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        tree_element *e = &p->element[i];
-        e->q = at->element[i].q;
-        if (at->inside[i]) e->q += at->element[i].stiffness * tree_dot(e->row, e->on, &by);
-    }
+    if (p->m->star)
+        tree_move_all(at, laws, &by, true);
+    else
+        tree_move_all_deep(at, laws, &by);
 }
 
 /* --------------------------------------------------------------------------------------- the search -- */
@@ -327,18 +382,6 @@ static bool tree_is_resolved(tree_search *at) {
            TREE_RESOLVED * TREE_RESOLVED * p->scale + TREE_ROUNDED * TREE_ROUNDED * stress;
 }
 
-static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
-    real before = LACONIC_REAL_MAX;
-    for (int32_t pass = 0;; pass++) {
-        const real residual = tree_see_all(at);
-        ++*passes;
-        if (tree_is_solved(at->p, residual, R(1))) return true;
-        if (pass == most || (pass > 1 && residual > TREE_WORTH_IT * before)) return false;
-        before = residual;
-        tree_exact_pass(at);
-    }
-}
-
 typedef struct tree_kept {
     tree_vector nu;
     real speed[TREE_WHEELS], impulse[TREE_WHEELS][2], q[TREE_ELEMENTS];
@@ -360,6 +403,68 @@ static void tree_go_back(tree_problem *p, const tree_kept *kept) {
         for (int m = 0; m < 2; m++) p->contact[i].impulse[m] = kept->impulse[i][m];
     }
     for (int32_t i = 0; i < p->element_count; i++) p->element[i].q = kept->q[i];
+}
+
+/* How far the contact's impulse can grow by such a change until it is at the border of its grip. */
+static real tree_reach(const tree_contact *c, const real change[2]) {
+    const real *p = c->impulse, a = change[0] * change[0] + change[1] * change[1];
+    const real b = p[0] * change[0] + p[1] * change[1];
+    const real left = c->load.grip * c->load.grip - (p[0] * p[0] + p[1] * p[1]), root = b * b + a * left;
+    return a > R(0) && left > R(0) && root > R(0) ? left / (b + quick_root(root)) : LACONIC_REAL_MAX;
+}
+
+static real tree_element_reach(const tree_element *e, real change) {
+    if (change > R(0) && e->high < LACONIC_REAL_MAX) return (e->high - e->q) / change;
+    if (change < R(0) && e->low > -LACONIC_REAL_MAX) return (e->low - e->q) / change;
+    return LACONIC_REAL_MAX;
+}
+
+/* Contacts and elements that all stick may ask for more than any motion fulfils, by as little as two casters that are
+ * not quite in line. Each pass then stresses them against each other by as little more, until the weakest slips: far
+ * too many passes. Goes there at once, along the change of one more pass. Returns false where nothing gives way. */
+RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
+    tree_problem *p = at->p;
+    tree_kept before;
+    real reach = LACONIC_REAL_MAX;
+    tree_keep(&before, p);
+    tree_exact_pass(at);
+    ++*passes;
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        const tree_contact *c = &p->contact[i];
+        const real change[2] = {c->impulse[0] - before.impulse[i][0], c->impulse[1] - before.impulse[i][1]};
+        const real here = at->sight[i].length > R(0) ? LACONIC_REAL_MAX : tree_reach(c, change);
+        if (here < reach) reach = here;
+    }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const real here = at->inside[i] ? tree_element_reach(&p->element[i], p->element[i].q - before.q[i])
+                                        : LACONIC_REAL_MAX;
+        if (here < reach) reach = here;
+    }
+    if (!(reach < TREE_FARTHEST)) return false;
+    for (int32_t i = 0; i < p->contact_count; i++)
+        for (int m = 0; m < 2; m++) p->contact[i].impulse[m] += reach * (p->contact[i].impulse[m] - before.impulse[i][m]);
+    for (int32_t i = 0; i < p->element_count; i++) p->element[i].q += reach * (p->element[i].q - before.q[i]);
+    return true;
+}
+
+static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
+    real before = LACONIC_REAL_MAX;
+    int32_t stresses = 0;
+    for (int32_t pass = 0;; pass++) {
+        const real residual = tree_see_all(at);
+        ++*passes;
+        if (tree_is_solved(at->p, residual, R(1))) return true;
+        const bool stalls = pass > 1 && residual > TREE_WORTH_IT * before;
+        before = residual;
+        if (stalls && stresses < TREE_MOST_STRESSES && residual <= TREE_ALMOST * TREE_ALMOST * at->p->scale &&
+            tree_stress_to_slip(at, passes)) {
+            stresses++;
+            pass = 0;
+            continue;
+        }
+        if (pass == most || stalls) return false;
+        tree_exact_pass(at);
+    }
 }
 
 /* Passes along the central path, and from time to time exact ones: they finish at once where they converge. */

@@ -21,7 +21,7 @@ typedef struct tree_contact {
     const laconic_tree_rim *wheel;
     tree_row row[2];              /* along; k across                                    */
     real along, cross_row, across; /* row[0]·row[0], row[0]·row[1], row[1]·row[1]        */
-    real mobility, lateral_mass, row_mass[2];
+    real mobility, inverse_mobility, lateral_mass, row_mass[2];
     friction_load load;
     real speed, impulse[2];       /* found; on entry the guess of the impulse           */
 } tree_contact;
@@ -31,21 +31,23 @@ typedef struct tree_element {
     const tree_row *row;
     real low, high; /* of q; ∓LACONIC_REAL_MAX: no bound */
     real compliance, target, mobility;
-    real q; /* found; on entry the guess */
+    real all, inverse_all;      /* mobility + compliance                                          */
+    real share, stiffness;      /* of the law inside: q = share·q + stiffness (x − target)        */
+    real q;                     /* found; on entry the guess                                      */
 } tree_element;
 
 typedef struct tree_problem {
     const tree_model *m;
     tree_vector free, nu;
     real scale; /* twice the energy of the free motion */
-    int32_t contact_count, element_count;
+    int32_t contact_count, element_count; /* elements of one row follow each other */
     tree_contact contact[TREE_WHEELS];
     tree_element element[TREE_ELEMENTS];
     tree_row hinge_row[TREE_HINGES], scrub_row[TREE_WHEELS];
 } tree_problem;
 
-/* Fills what a contact needs besides its rows and load. */
-void laconic_tree_prepare_contact(tree_contact *c);
+/* Fills what contacts and elements need besides rows, loads, bounds and targets. */
+void laconic_tree_prepare_problem(tree_problem *p);
 
 /* Finds nu, speeds, impulses and q. Returns the number of passes; 0: refused, as friction_solver.h states. */
 int32_t laconic_tree_solve(tree_problem *p);

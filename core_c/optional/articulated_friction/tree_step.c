@@ -187,31 +187,31 @@ static void tree_add_hinge(tree_part *p, int32_t b, const tree_state *s) {
     if (link->stops) tree_add_stops(p, b, s);
 }
 
-static void tree_transform_hinge(tree_part *p, int32_t b) {
+INLINE void tree_transform_hinge(tree_part *p, int32_t b, bool star) {
     const tree_body *link = &p->m->body[b];
     tree_row *row = &p->problem.hinge_row[b - 1];
     if (p->hinge[b - 1].drive < 0 && p->hinge[b - 1].dry < 0 && p->hinge[b - 1].stop < 0) return;
     row->base = none;
-    for (int32_t k = 0; k < link->depth; k++) row->along[k] = R(0);
-    row->along[link->depth - 1] = R(1);
-    tree_back_row(row, &p->factor, link);
+    for (int32_t k = 0; k < link->depth - 1 && !star; k++) row->along[k] = R(0);
+    row->along[star ? 0 : link->depth - 1] = R(1);
+    tree_back_row(row, &p->factor, link, star);
 }
 
 /* ------------------------------------------------------------------------------------------ wheels -- */
 
-static void tree_fill_rows(tree_contact *c, const tree_part *p, const tree_place_of_wheel *w) {
+INLINE void tree_fill_rows(tree_contact *c, const tree_part *p, const tree_place_of_wheel *w, bool star) {
     const direction u = w->pull;
     const real k = c->wheel->drag;
     c->row[0].base = vector_of(u.cosine, u.sine, w->x * u.sine - w->y * u.cosine);
     c->row[1].base = vector_of(-k * u.sine, k * u.cosine, k * (w->x * u.cosine + w->y * u.sine));
-    for (int32_t l = 0; l < c->on->depth; l++) {
+    for (int32_t l = 0; l < tree_depth(c->on, star); l++) {
         const int32_t b = c->on->path[l] + 1;
         const real x = w->x - p->at.hinge_x[b], y = w->y - p->at.hinge_y[b];
         c->row[0].along[l] = x * u.sine - y * u.cosine;
         c->row[1].along[l] = k * (x * u.cosine + y * u.sine);
     }
-    tree_back_row(&c->row[0], &p->factor, c->on);
-    tree_back_row(&c->row[1], &p->factor, c->on);
+    tree_back_row(&c->row[0], &p->factor, c->on, star);
+    tree_back_row(&c->row[1], &p->factor, c->on, star);
 }
 
 static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_state *s, int32_t i) {
@@ -245,7 +245,7 @@ static void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
     tree_element *e = tree_new_element(p, w->body, row);
     row->base = vector_of(R(0), R(0), R(1));
     for (int32_t k = 0; k < e->on->depth; k++) row->along[k] = R(1);
-    tree_back_row(row, &p->factor, e->on);
+    tree_back_row(row, &p->factor, e->on, false);
     e->high = bound;
     e->low = -bound;
     if (w->scrub_fade_m > R(0))
@@ -253,18 +253,24 @@ static void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
     e->q = p->h * s->scrub_Nm[i];
 }
 
-static void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i) {
+INLINE void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i, bool star) {
     tree_contact *c = &p->problem.contact[i];
     c->wheel = &p->m->wheel[i];
     c->on = &p->m->body[c->wheel->body];
-    tree_fill_rows(c, p, &p->place[i]);
+    tree_fill_rows(c, p, &p->place[i], star);
     tree_load_wheel(c, p, s, i);
-    laconic_tree_prepare_contact(c);
     for (int k = 0; k < 2; k++) c->impulse[k] = p->h * s->grip_N[i][k];
     tree_add_scrub(p, s, i);
 }
 
 /* --------------------------------------------------------------------------------------- the step -- */
+
+INLINE void tree_build_rows(tree_part *p, const tree_state *s, bool star) {
+    for (int32_t b = 1; b <= p->m->body_count; b++) tree_transform_hinge(p, b, star);
+    for (int32_t i = 0; i < p->m->wheel_count; i++) tree_add_wheel(p, s, i, star);
+}
+
+RARE void tree_build_rows_deep(tree_part *p, const tree_state *s) { tree_build_rows(p, s, false); }
 
 static void tree_build(tree_part *p, const tree_state *s) {
     tree_problem *q = &p->problem;
@@ -274,10 +280,11 @@ static void tree_build(tree_part *p, const tree_state *s) {
     for (int32_t b = 1; b <= p->m->body_count; b++) tree_add_hinge(p, b, s);
     laconic_tree_factor(&p->factor, p->m);
     tree_back_vector(&q->free, &p->factor, p->m);
-    for (int32_t b = 1; b <= p->m->body_count; b++) tree_transform_hinge(p, b);
-    for (int32_t i = 0; i < p->m->wheel_count; i++) tree_add_wheel(p, s, i);
-    for (int32_t i = 0; i < q->element_count; i++)
-        q->element[i].mobility = tree_row_product(q->element[i].row, q->element[i].row, q->element[i].on);
+    if (p->m->star)
+        tree_build_rows(p, s, true);
+    else
+        tree_build_rows_deep(p, s);
+    laconic_tree_prepare_problem(q);
 }
 
 static void tree_command(tree_part *p, const tree_state *s) {
