@@ -62,7 +62,8 @@ typedef struct laconic_tree_hinge {
 typedef struct laconic_tree_wheel {
     laconic_real load_N;         /* a measured normal load, which stays; of all wheels or of none              */
     laconic_real scrub_radius_m; /* a: a standing wheel resists turning about the vertical with μN a           */
-    laconic_real scrub_fade_m;   /* ρ_s: a rolling one with μN a · min(1, ρ_s/radius of its path); 0: as standing */
+    laconic_real scrub_fade_m;   /* ρ_s: a rolling one with μN a · min(1, ρ_s/radius of its path); 0: as standing.
+                                    A rim slower than 1 µm/s counts as standing */
 } laconic_tree_wheel;
 
 /* Start from all zero. `hinged.base.ground.friction_coefficient` must be above 0; `hinged.base.drive` holds for the
@@ -151,6 +152,7 @@ typedef struct laconic_tree_rim {
 /* A motor on a wheel's axle, or behind them on a hinge. */
 typedef struct laconic_tree_motor {
     int32_t circuit;                   /* laconic_motor_circuit                                              */
+    bool acts;                         /* there is a motor, or viscous friction                              */
     laconic_real gain_Nm_per_V, back_emf_Nms, viscous_Nms, torque_limit_Nm; /* LACONIC_REAL_MAX: no limit    */
     laconic_real ampere_per_Nm;        /* 0 where R_a is not known                                           */
 } laconic_tree_motor;

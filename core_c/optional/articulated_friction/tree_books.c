@@ -25,6 +25,7 @@ static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_s
 /* The electrical side of a motor that gave this torque at this speed. */
 static void tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real speed) {
     const laconic_tree_motor *a = &p->m->motor[axis];
+    if (!a->acts) return;
     const tree_motor_state motor = laconic_tree_motor_at(p->m, axis, p->command_V[axis], speed, p->terminal_V);
     real fed = p->h * a->gain_Nm_per_V * motor.voltage_V * speed;
     if (a->ampere_per_Nm != R(0)) fed = p->h * motor.voltage_V * motor.current_A;
@@ -47,6 +48,7 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     e->axle += p->h * w->dry_Nm * magnitude(speed);
     e->outer += p->h * torque * speed;
     e->numerical += R(0.5) * w->inertia_kgm2 * change * change;
+    s->motor_torque_Nm[i] = R(0);
     tree_enter_motor(e, p, s, i, speed);
     s->motor_torque_Nm[i] += torque;
     sum_add(&s->wheel_angle_rad[i], R(0.5) * p->h * (old + speed));

@@ -152,28 +152,32 @@ void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_elemen
         tree_move_deep(p, laws, elements, by);
 }
 
-INLINE void tree_imbalance_on(tree_vector *rest, const tree_problem *p, bool star) {
-    tree_difference(rest, p);
+INLINE void tree_take_forces(tree_vector *from, const tree_problem *p, bool star) {
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
-        tree_subtract(rest, &c->row[0], c->impulse[0], c->on, star);
-        tree_subtract(rest, &c->row[1], c->impulse[1], c->on, star);
+        tree_subtract(from, &c->row[0], c->impulse[0], c->on, star);
+        tree_subtract(from, &c->row[1], c->impulse[1], c->on, star);
     }
     for (int32_t i = 0; i < p->element_count;) {
         const tree_element *e = &p->element[i];
         real q = R(0);
         for (; i < p->element_count && p->element[i].row == e->row; i++) q += p->element[i].q;
-        tree_subtract(rest, e->row, q, e->on, star);
+        tree_subtract(from, e->row, q, e->on, star);
     }
 }
 
-RARE void tree_imbalance_deep(tree_vector *rest, const tree_problem *p) { tree_imbalance_on(rest, p, false); }
+RARE void tree_take_forces_deep(tree_vector *from, const tree_problem *p) { tree_take_forces(from, p, false); }
+
+void laconic_tree_take_forces(tree_vector *from, const tree_problem *p) {
+    if (p->m->star)
+        tree_take_forces(from, p, true);
+    else
+        tree_take_forces_deep(from, p);
+}
 
 void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p) {
-    if (p->m->star)
-        tree_imbalance_on(rest, p, true);
-    else
-        tree_imbalance_deep(rest, p);
+    tree_difference(rest, p);
+    laconic_tree_take_forces(rest, p);
 }
 
 #endif

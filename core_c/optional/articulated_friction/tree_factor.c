@@ -1,10 +1,11 @@
 /* M = LᵀL from leaf to root. */
+#include "friction_internals.h"
 #include "tree_posture.h"
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
-/* Square roots to rounding: of pivots, which are far inside the range. */
-static real tree_inverse_root(real pivot) { return R(1) / laconic_root(pivot); }
+/* Of pivots, which are far inside the range. */
+static inline real tree_inverse_root(real pivot) { return R(1) / quick_root(pivot); }
 
 static void tree_eliminate(tree_matrix *k, const tree_row *node, const tree_body *link) {
     const vector b = node->base;

@@ -85,21 +85,33 @@ static bool tree_lift(tree_group *g) {
     return another;
 }
 
-static void tree_share(tree_group *g) {
-    bool all_hold = true, again = true;
-    while (again) { /* ends: each round but the last lifts a point */
+/* Points that would pull lift until none does. */
+RARE void tree_share_again(tree_group *g) {
+    while (tree_lift(g)) { /* ends: each round lifts a point */
         vector lambda;
-        if (tree_balance(&lambda, g)) {
-            for (int32_t k = 0; k < g->count; k++)
-                if (!g->lifted[k]) g->load_N[k] = dot(g->row[k], lambda);
-        } else {
+        if (!tree_balance(&lambda, g)) {
             tree_balance_what_can_be(g);
-            all_hold = false;
+            continue;
         }
-        again = tree_lift(g);
-        if (again) all_hold = false;
+        for (int32_t k = 0; k < g->count; k++)
+            if (!g->lifted[k]) g->load_N[k] = dot(g->row[k], lambda);
     }
-    if (!all_hold) tree_carry_weight(g);
+    tree_carry_weight(g);
+}
+
+static void tree_share(tree_group *g) {
+    vector lambda;
+    bool pulls = false;
+    if (!tree_balance(&lambda, g)) {
+        tree_balance_what_can_be(g);
+        tree_share_again(g);
+        return;
+    }
+    for (int32_t k = 0; k < g->count; k++) {
+        g->load_N[k] = dot(g->row[k], lambda);
+        pulls = pulls || g->load_N[k] < R(0);
+    }
+    if (pulls) tree_share_again(g);
 }
 
 static void tree_fill_group(tree_group *g, int32_t number, const tree_model *m, const tree_posture *at,
@@ -115,8 +127,9 @@ static void tree_fill_group(tree_group *g, int32_t number, const tree_model *m, 
     }
     for (int32_t i = 0; i < m->wheel_count; i++) {
         if (m->body[m->wheel[i].body].group != number) continue;
-        const real along = -state->grip_N[i][0], across = -m->wheel[i].drag * state->grip_N[i][1];
         tree_add_point(g, i, place[i].x, place[i].y);
+        if (m->body[number].com_z_m == R(0)) continue;
+        const real along = -state->grip_N[i][0], across = -m->wheel[i].drag * state->grip_N[i][1];
         fx += along * place[i].pull.cosine - across * place[i].pull.sine;
         fy += along * place[i].pull.sine + across * place[i].pull.cosine;
     }

@@ -195,7 +195,6 @@ void laconic_tree_start_path(tree_problem *p, tree_path *path) {
         tree_element *e = &p->element[i];
         e->q = tree_boxed(e->q, e->low, e->high);
     }
-    p->nu = p->free;
     laconic_tree_follow(p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         path->axle[i] = R(0);

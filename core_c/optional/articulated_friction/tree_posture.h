@@ -95,9 +95,16 @@ static inline void tree_place(tree_posture *p, const tree_model *m, const direct
     for (int32_t b = 1; b <= m->body_count; b++) {
         const tree_body *link = &m->body[b];
         const int32_t on = link->parent;
-        const direction a = p->axes[on], d = p->axes[b] = tree_turned(a, turned[b - 1]);
-        p->hinge_x[b] = p->hinge_x[on] + (a.cosine * link->hinge_x_m - a.sine * link->hinge_y_m);
-        p->hinge_y[b] = p->hinge_y[on] + (a.sine * link->hinge_x_m + a.cosine * link->hinge_y_m);
+        direction d = turned[b - 1];
+        p->hinge_x[b] = link->hinge_x_m;
+        p->hinge_y[b] = link->hinge_y_m;
+        if (on > 0) {
+            const direction a = p->axes[on];
+            p->hinge_x[b] = p->hinge_x[on] + (a.cosine * link->hinge_x_m - a.sine * link->hinge_y_m);
+            p->hinge_y[b] = p->hinge_y[on] + (a.sine * link->hinge_x_m + a.cosine * link->hinge_y_m);
+            d = tree_turned(a, d);
+        }
+        p->axes[b] = d;
         p->com_x[b] = p->hinge_x[b] + (d.cosine * link->com_x_m - d.sine * link->com_y_m);
         p->com_y[b] = p->hinge_y[b] + (d.sine * link->com_x_m + d.cosine * link->com_y_m);
     }

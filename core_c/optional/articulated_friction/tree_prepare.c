@@ -117,6 +117,7 @@ static void tree_fill_motor(laconic_tree_motor *a, real gain, real damping, real
     a->gain_Nm_per_V = gain;
     a->back_emf_Nms = damping - part;
     a->viscous_Nms = part;
+    a->acts = gain != R(0) || damping > R(0);
     a->ampere_per_Nm = per_ampere != R(0) ? R(1) / per_ampere : R(0);
     a->torque_limit_Nm =
         current_limit_A > R(0) && per_ampere != R(0) ? magnitude(per_ampere) * current_limit_A : LACONIC_REAL_MAX;

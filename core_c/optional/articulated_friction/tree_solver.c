@@ -8,6 +8,7 @@
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
 #ifdef LACONIC_SINGLE
+#define TREE_PENALTY PENALTY
 #define TREE_TOLERANCE R(1e-5)
 #define TREE_RESOLVED R(4e-5)
 #define TREE_ROUNDED R(3e-7)
@@ -17,6 +18,7 @@
 #define TREE_HIDDEN R(1e-8)
 #define TREE_MOST_STRESS R(1e4)
 #else
+#define TREE_PENALTY R(1e8) /* one pass less than with that of rigid vehicles, where contacts keep to stick or slip */
 #define TREE_TOLERANCE R(1e-12)
 #define TREE_RESOLVED R(3e-11)
 #define TREE_ROUNDED R(6e-16)
@@ -38,22 +40,16 @@
 #define TREE_FARTHEST R(1e12) /* of the change in one pass */
 #define TREE_ALMOST (R(1e2) * TREE_TOLERANCE)
 
-/* What a pass sees of a contact, and of an element. */
+/* What a pass sees of a contact. */
 typedef struct tree_sight {
     real moved[2], t[2], length, axle, firm, rest;
     bool locked;
 } tree_sight;
 
-typedef struct tree_element_sight {
-    real t;
-    bool inside;
-} tree_element_sight;
-
 typedef struct tree_search {
     tree_problem *p;
     tree_sight sight[TREE_WHEELS];
     tree_element_law element[TREE_ELEMENTS];
-    bool inside[TREE_ELEMENTS];
 } tree_search;
 
 static real tree_inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
@@ -74,9 +70,12 @@ INLINE void tree_prepare_contact(tree_contact *c, bool star) {
 }
 
 static void tree_prepare_element(tree_element *e) {
-    const real penalty = PENALTY / e->mobility;
+    const real penalty = TREE_PENALTY / e->mobility;
     e->all = e->mobility + e->compliance;
     e->inverse_all = R(1) / e->all;
+    e->share = R(1);
+    e->stiffness = penalty;
+    if (e->compliance == R(0)) return;
     e->share = R(1) / (R(1) + penalty * e->compliance);
     e->stiffness = penalty * e->share;
 }
@@ -152,11 +151,10 @@ INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_v
 }
 
 /* The same of an element with x; its law for the pass follows at once. */
-INLINE real tree_see_element(tree_element_law *restrict law, bool *inside, const tree_element *e, real x) {
+INLINE real tree_see_element(tree_element_law *restrict law, const tree_element *e, real x) {
     const real away = x - e->target, off = (away - e->compliance * e->q) * e->inverse_all, t = e->q + off;
     real change = off;
-    *inside = t > e->low && t < e->high;
-    if (*inside) {
+    if (t > e->low && t < e->high) {
         law->stiffness = e->stiffness;
         law->q = e->share * e->q + e->stiffness * away;
     } else {
@@ -174,7 +172,7 @@ INLINE real tree_see_everything(tree_search *at, bool star) {
     for (int32_t i = 0; i < p->element_count; i++) {
         const tree_element *e = &p->element[i];
         if (i == 0 || e[-1].row != e->row) x = tree_dot(e->row, e->on, &p->nu, star);
-        residual += tree_see_element(&at->element[i], &at->inside[i], e, x);
+        residual += tree_see_element(&at->element[i], e, x);
     }
     return residual;
 }
@@ -199,7 +197,7 @@ INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_c
     const real beyond = (s->length - grip) * c->mobility, inertia = c->wheel->inertia_kgm2;
     const real row = n[1] * n[1] * c->along - R(2) * n[0] * n[1] * c->cross_row + n[0] * n[0] * c->across;
     const real turns = row + rim * rim / inertia;
-    const real most = turns > TREE_NO_SLIP * c->mobility ? PENALTY / turns : R(0);
+    const real most = turns > TREE_NO_SLIP * c->mobility ? TREE_PENALTY / turns : R(0);
     const bool far_beyond = most * beyond > grip;
     real h = far_beyond ? grip / beyond : most, turn = R(0);
     real across = (far_beyond ? R(0) : n[0] * c->impulse[1] - n[1] * c->impulse[0]) + h * moved;
@@ -223,8 +221,8 @@ INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_c
 }
 
 INLINE void tree_stays_locked(tree_law *restrict law, const tree_sight *s, const tree_contact *c) {
-    law->xx = PENALTY * c->row_mass[0];
-    law->yy = PENALTY * c->row_mass[1];
+    law->xx = TREE_PENALTY * c->row_mass[0];
+    law->yy = TREE_PENALTY * c->row_mass[1];
     law->xy = law->speed = law->turn[0] = law->turn[1] = R(0);
     law->impulse[0] = c->impulse[0] + law->xx * s->moved[0];
     law->impulse[1] = c->impulse[1] + law->yy * s->moved[1];
@@ -237,7 +235,7 @@ INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_c
     const real motor = l->drive - l->drive_slope * speed;
     const bool limited = magnitude(motor) > l->drive_limit;
     const real along = (own * speed - inertia * l->free_speed + s->axle - cut(motor, l->drive_limit)) / size;
-    const real k = (limited ? own : own + l->drive_slope) / (size * size), side = PENALTY * c->lateral_mass;
+    const real k = (limited ? own : own + l->drive_slope) / (size * size), side = TREE_PENALTY * c->lateral_mass;
     const real across = e[0] * c->impulse[1] - e[1] * c->impulse[0] + side * (e[0] * s->moved[1] - e[1] * s->moved[0]);
     law->speed = speed;
     law->impulse[0] = e[0] * along - e[1] * across;
@@ -331,9 +329,9 @@ static void tree_forget_stress(tree_problem *p) {
 }
 
 void laconic_tree_follow(tree_problem *p) {
-    tree_vector rest;
-    laconic_tree_imbalance(&rest, p);
-    tree_add(&p->nu, &rest, p->m->body_count);
+    p->nu.base = p->free.base;
+    for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = p->free.hinge[j];
+    laconic_tree_take_forces(&p->nu, p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         tree_contact *c = &p->contact[i];
         const real push = c->wheel->inertia_kgm2 * c->load.free_speed + c->wheel->rim[0] * c->impulse[0] +
@@ -436,7 +434,7 @@ RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
         if (here < reach) reach = here;
     }
     for (int32_t i = 0; i < p->element_count; i++) {
-        const real here = at->inside[i] ? tree_element_reach(&p->element[i], p->element[i].q - before.q[i])
+        const real here = at->element[i].stiffness > R(0) ? tree_element_reach(&p->element[i], p->element[i].q - before.q[i])
                                         : LACONIC_REAL_MAX;
         if (here < reach) reach = here;
     }
@@ -500,7 +498,6 @@ int32_t laconic_tree_solve(tree_problem *p) {
     if (!is_finite(p->scale)) return 0;
     if (p->scale < TREE_SMALLEST_ENERGY) return tree_nothing(p);
     tree_forget_stress(p);
-    p->nu = p->free;
     laconic_tree_follow(p);
     if (!tree_pass_exactly(&at, TREE_EXACT_PASSES, &passes) && !tree_search_along_path(&at, &passes)) return 0;
     tree_snap(p);

@@ -65,10 +65,13 @@ typedef struct tree_element_law {
 /* Adds the laws to the equations, solves them, and moves ν. `by` gets the change of ν. */
 void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by);
 
+/* Subtracts what impulses and q do. */
+void laconic_tree_take_forces(tree_vector *from, const tree_problem *p);
+
 /* What impulses and q leave of the bodies' equations. */
 void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p);
 
-/* The speeds to which impulses and q lead. */
+/* Sets the speeds to which impulses and q lead. */
 void laconic_tree_follow(tree_problem *p);
 
 /* Where the search is on the central path of the smoothed problem. */

@@ -13,6 +13,7 @@
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 #define TREE_MOST_PARTS 8
+#define TREE_STANDING_M_PER_S R(1e-6) /* else a fading scrub that holds a stress would creep, ever slower, for ever */
 #ifdef LACONIC_SINGLE
 #define TREE_LARGEST R(1e8)
 #else
@@ -248,8 +249,9 @@ static void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
     tree_back_row(row, &p->factor, e->on, false);
     e->high = bound;
     e->low = -bound;
-    if (w->scrub_fade_m > R(0))
-        e->compliance = w->radius_m * magnitude(s->wheel_speed_rad_per_s[i]) / (w->scrub_fade_m * bound);
+    const real rim_speed = w->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
+    if (w->scrub_fade_m > R(0) && rim_speed > TREE_STANDING_M_PER_S)
+        e->compliance = rim_speed / (w->scrub_fade_m * bound);
     e->q = p->h * s->scrub_Nm[i];
 }
 

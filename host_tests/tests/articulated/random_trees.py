@@ -40,14 +40,15 @@ def random_body(rng: np.random.Generator, parent: int) -> Case:
 
 
 def random_tree(rng: np.random.Generator, plain: bool = False) -> Case:
-    """One to four hinged bodies, some on others, each with a wheel. `plain`: nothing commands a hinge."""
+    """One to four hinged bodies, some on others, each with a wheel. `plain`: no hinge has a command or a spring."""
     count = int(rng.integers(1, 5))
     bodies = [{"mass_kg": rng.uniform(8, 40), "yaw_inertia_kgm2": rng.uniform(0.3, 3), "com_m": [0.0, 0.0],
                "hinge_at_parent_m": [0.0, 0.0]}]
     bodies += [random_body(rng, int(rng.integers(0, b)) if rng.random() < 0.4 else 0) for b in range(1, count + 1)]
     for body in bodies[1:]:
         if plain:
-            body |= {"servo_kp": 0.0, "servo_kd": 0.0, "servo_limit_Nm": None, "prescribed": False}
+            body |= {"servo_kp": 0.0, "servo_kd": 0.0, "servo_limit_Nm": None, "prescribed": False,
+                     "spring_Nm_per_rad": 0.0}
     load = 9.81 * sum(body["mass_kg"] for body in bodies) / (2 + count)
     wheels = [random_wheel(rng, 0, [0.1, side * 0.2], load) for side in (1, -1)]
     wheels += [random_wheel(rng, b, [rng.uniform(-0.1, 0.0), rng.uniform(-0.02, 0.02)], load * rng.uniform(0.6, 1.4))

@@ -84,7 +84,7 @@ class Problem:
             self.mass += body["mass_kg"] * jacobian.T @ jacobian + body["yaw_inertia_kgm2"] * np.outer(turning, turning)
             self.push += (body["mass_kg"] * jacobian.T @ velocity
                           + body["yaw_inertia_kgm2"] * turning * before.velocity[b][2])
-        self.pure_mass = self.mass.copy()
+        self.pure_mass, self.carried = self.mass.copy(), self.push.copy()
         self.push[:3] += h * np.array(segment.get("body_wrench", [0, 0, 0]))
         self.elements: list[Element] = []
         for j, body in enumerate(vehicle["bodies"][1:], start=1):
@@ -144,7 +144,8 @@ class Problem:
                 bound, fade = self.grip[i] * wheel["scrub_radius_m"], wheel["scrub_fade_m"]
                 row = np.concatenate([self.tree.turning(body), np.zeros(self.count)])
                 speed = wheel["radius_m"] * abs(before.wheel_speed[i])
-                self.elements.append(Element(row, -bound, bound, speed / (fade * bound) if fade > 0 else 0))
+                rolls = fade > 0 and speed > 1e-6
+                self.elements.append(Element(row, -bound, bound, speed / (fade * bound) if rolls else 0))
 
     # ------------------------------------------------------------------------------------- judging
 

@@ -10,7 +10,7 @@
  *   input    N voltages, N torques, 3 body wrench, 2 world force, 2 point, H voltages, H torques, H rates, H angles
  *   run      step steps            as often as said
  *   trace    step steps            the same, and prints the state after each step as `state` does
- *   passes   prints how many steps took 0, 1 … 50 passes, then how often the energy grew
+ *   passes   prints how many steps took 0, 1 … 50 passes, then after how many steps but the first energy had grown
  *   state    prints pose, angles, z, wheel speeds, velocities of the bodies, grips, scrub, dry, stops, drives, loads
  *   books    prints energy, spring, supply, outer, servo, slip, scrub, axle, hinge, stop, motor, supply loss, numerical
  *   outputs  prints slips along and across, contact states, forces, loads, hinge torques, currents, limits
@@ -27,6 +27,7 @@ static laconic_tree_state state;
 static laconic_tree_input input;
 static laconic_refusal why;
 static long passes[52], growths;
+static double last_energy_J = -1; /* below 0: of springs it is known from the first step on */
 
 static double number(void) {
     double x;
@@ -116,6 +117,7 @@ static void read_start(void) {
     for (int i = 0; i < model.wheel_count; i++) start.wheel_speed_rad_per_s[i] = real_number();
     start.wheels_stand = true;
     check(laconic_tree_state_set(&state, &model, &start, &why));
+    last_energy_J = -1;
 }
 
 static void read_input(void) {
@@ -165,12 +167,11 @@ static double energy_J(void) {
 static void run(bool traced) {
     const laconic_real step = real_number();
     const long steps = (long)number();
-    double before = energy_J();
     for (long i = 0; i < steps; i++) {
         check(laconic_tree_step(&model, step, &state, &input, &why));
         const double after = energy_J();
-        growths += after > before;
-        before = after;
+        growths += last_energy_J >= 0 && after > last_energy_J;
+        last_energy_J = after;
         passes[state.passes < 51 ? state.passes : 51]++;
         if (traced) print_state();
     }
