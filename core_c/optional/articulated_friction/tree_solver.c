@@ -8,7 +8,7 @@
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
 #ifdef LACONIC_SINGLE
-#define TREE_PENALTY PENALTY
+#define TREE_STIFF_PENALTY PENALTY
 #define TREE_TOLERANCE R(1e-5)
 #define TREE_RESOLVED R(4e-5)
 #define TREE_ROUNDED R(3e-7)
@@ -18,7 +18,7 @@
 #define TREE_HIDDEN R(1e-8)
 #define TREE_MOST_STRESS R(1e4)
 #else
-#define TREE_PENALTY R(1e8) /* one pass less than with that of rigid vehicles, where contacts keep to stick or slip */
+#define TREE_STIFF_PENALTY R(1e8) /* at first: a pass less than with PENALTY, where contacts keep to stick or slip */
 #define TREE_TOLERANCE R(1e-12)
 #define TREE_RESOLVED R(3e-11)
 #define TREE_ROUNDED R(6e-16)
@@ -36,7 +36,9 @@
 #define TREE_AHEAD 3
 #define TREE_TRIED 3
 #define TREE_WORTH_IT R(0.1)
+#define TREE_NEARLY R(4) /* where rounding leaves no more to find: twice the tolerance, squared */
 #define TREE_MOST_STRESSES 3
+#define TREE_SAME R(0.01)     /* of a change, squared */
 #define TREE_FARTHEST R(1e12) /* of the change in one pass */
 #define TREE_ALMOST (R(1e2) * TREE_TOLERANCE)
 
@@ -69,10 +71,8 @@ INLINE void tree_prepare_contact(tree_contact *c, bool star) {
         tree_inverse_or_zero(e[1] * e[1] * c->along - R(2) * e[0] * e[1] * c->cross_row + e[0] * e[0] * c->across);
 }
 
-static void tree_prepare_element(tree_element *e) {
-    const real penalty = TREE_PENALTY / e->mobility;
-    e->all = e->mobility + e->compliance;
-    e->inverse_all = R(1) / e->all;
+static void tree_stiffen_element(tree_element *e, real of_mass) {
+    const real penalty = of_mass / e->mobility;
     e->share = R(1);
     e->stiffness = penalty;
     if (e->compliance == R(0)) return;
@@ -81,12 +81,15 @@ static void tree_prepare_element(tree_element *e) {
 }
 
 INLINE void tree_prepare_all(tree_problem *p, bool star) {
+    p->penalty = TREE_STIFF_PENALTY;
     for (int32_t i = 0; i < p->contact_count; i++) tree_prepare_contact(&p->contact[i], star);
     for (int32_t i = 0; i < p->element_count; i++) {
         tree_element *e = &p->element[i];
         const bool again = i > 0 && p->element[i - 1].row == e->row;
         e->mobility = again ? p->element[i - 1].mobility : tree_row_product(e->row, e->row, e->on, star);
-        tree_prepare_element(e);
+        e->all = e->mobility + e->compliance;
+        e->inverse_all = R(1) / e->all;
+        tree_stiffen_element(e, TREE_STIFF_PENALTY);
     }
 }
 
@@ -191,13 +194,13 @@ static inline turning tree_turning(const tree_contact *c, real added, real axle,
 }
 
 /* Along n the impulse is the grip; across n it turns with the slip. */
-INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_contact *c) {
+INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
     const real n[2] = {s->t[0] / s->length, s->t[1] / s->length}, *rims = c->wheel->rim, grip = c->load.grip;
     const real rim = n[0] * rims[1] - n[1] * rims[0], moved = n[0] * s->moved[1] - n[1] * s->moved[0];
     const real beyond = (s->length - grip) * c->mobility, inertia = c->wheel->inertia_kgm2;
     const real row = n[1] * n[1] * c->along - R(2) * n[0] * n[1] * c->cross_row + n[0] * n[0] * c->across;
     const real turns = row + rim * rim / inertia;
-    const real most = turns > TREE_NO_SLIP * c->mobility ? TREE_PENALTY / turns : R(0);
+    const real most = turns > TREE_NO_SLIP * c->mobility ? penalty / turns : R(0);
     const bool far_beyond = most * beyond > grip;
     real h = far_beyond ? grip / beyond : most, turn = R(0);
     real across = (far_beyond ? R(0) : n[0] * c->impulse[1] - n[1] * c->impulse[0]) + h * moved;
@@ -220,22 +223,22 @@ INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_c
     law->yy = h * n[0] * n[0];
 }
 
-INLINE void tree_stays_locked(tree_law *restrict law, const tree_sight *s, const tree_contact *c) {
-    law->xx = TREE_PENALTY * c->row_mass[0];
-    law->yy = TREE_PENALTY * c->row_mass[1];
+INLINE void tree_stays_locked(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
+    law->xx = penalty * c->row_mass[0];
+    law->yy = penalty * c->row_mass[1];
     law->xy = law->speed = law->turn[0] = law->turn[1] = R(0);
     law->impulse[0] = c->impulse[0] + law->xx * s->moved[0];
     law->impulse[1] = c->impulse[1] + law->yy * s->moved[1];
 }
 
-INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_contact *c) {
+INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
     const real *e = c->wheel->rolling, size = c->wheel->rim_size, inertia = c->wheel->inertia_kgm2;
     const friction_load *l = &c->load;
     const real own = inertia + l->viscous, speed = (e[0] * s->moved[0] + e[1] * s->moved[1]) / size;
     const real motor = l->drive - l->drive_slope * speed;
     const bool limited = magnitude(motor) > l->drive_limit;
     const real along = (own * speed - inertia * l->free_speed + s->axle - cut(motor, l->drive_limit)) / size;
-    const real k = (limited ? own : own + l->drive_slope) / (size * size), side = TREE_PENALTY * c->lateral_mass;
+    const real k = (limited ? own : own + l->drive_slope) / (size * size), side = penalty * c->lateral_mass;
     const real across = e[0] * c->impulse[1] - e[1] * c->impulse[0] + side * (e[0] * s->moved[1] - e[1] * s->moved[0]);
     law->speed = speed;
     law->impulse[0] = e[0] * along - e[1] * across;
@@ -247,13 +250,13 @@ INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_c
     law->yy = k * e[1] * e[1] + side * e[0] * e[0];
 }
 
-static void tree_take_law(tree_law *law, const tree_sight *s, const tree_contact *c) {
+static void tree_take_law(tree_law *law, const tree_sight *s, const tree_contact *c, real penalty) {
     if (s->length > R(0))
-        tree_slips(law, s, c);
+        tree_slips(law, s, c, penalty);
     else if (s->locked)
-        tree_stays_locked(law, s, c);
+        tree_stays_locked(law, s, c, penalty);
     else
-        tree_rolls(law, s, c);
+        tree_rolls(law, s, c, penalty);
 }
 
 INLINE void tree_move_contact(tree_contact *c, const tree_law *law, const tree_vector *by, bool star) {
@@ -282,7 +285,8 @@ static void tree_exact_pass(tree_search *at) {
     tree_problem *p = at->p;
     tree_law laws[TREE_WHEELS];
     tree_vector by;
-    for (int32_t i = 0; i < p->contact_count; i++) tree_take_law(&laws[i], &at->sight[i], &p->contact[i]);
+    for (int32_t i = 0; i < p->contact_count; i++)
+        tree_take_law(&laws[i], &at->sight[i], &p->contact[i], p->penalty);
     laconic_tree_move(p, laws, at->element, &by);
     if (p->m->star)
         tree_move_all(at, laws, &by, true);
@@ -417,31 +421,64 @@ static real tree_element_reach(const tree_element *e, real change) {
     return LACONIC_REAL_MAX;
 }
 
-/* Contacts and elements that all stick may ask for more than any motion fulfils, by as little as two casters that are
- * not quite in line. Each pass then stresses them against each other by as little more, until the weakest slips: far
- * too many passes. Goes there at once, along the change of one more pass. Returns false where nothing gives way. */
-RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
-    tree_problem *p = at->p;
-    tree_kept before;
+/* The square of the change of impulses and q between two passes, less `share` of another change. */
+static real tree_change(const tree_problem *p, const tree_kept *from, const tree_kept *to, const tree_kept *less,
+                        real share) {
+    real sum = R(0);
+    for (int32_t i = 0; i < p->contact_count; i++)
+        for (int m = 0; m < 2; m++) {
+            const real was = from->impulse[i][m] - less->impulse[i][m];
+            const real off = to->impulse[i][m] - from->impulse[i][m] - share * was;
+            sum += off * off * p->contact[i].mobility;
+        }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const real off = to->q[i] - from->q[i] - share * (from->q[i] - less->q[i]);
+        sum += off * off * p->element[i].mobility;
+    }
+    return sum;
+}
+
+/* How often the last change can be added until something is at its bound. */
+static real tree_least_reach(const tree_search *at, const tree_kept *before) {
+    const tree_problem *p = at->p;
     real reach = LACONIC_REAL_MAX;
-    tree_keep(&before, p);
-    tree_exact_pass(at);
-    ++*passes;
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
-        const real change[2] = {c->impulse[0] - before.impulse[i][0], c->impulse[1] - before.impulse[i][1]};
+        const real change[2] = {c->impulse[0] - before->impulse[i][0], c->impulse[1] - before->impulse[i][1]};
         const real here = at->sight[i].length > R(0) ? LACONIC_REAL_MAX : tree_reach(c, change);
         if (here < reach) reach = here;
     }
     for (int32_t i = 0; i < p->element_count; i++) {
-        const real here = at->element[i].stiffness > R(0) ? tree_element_reach(&p->element[i], p->element[i].q - before.q[i])
-                                        : LACONIC_REAL_MAX;
+        const tree_element *e = &p->element[i];
+        if (!(at->element[i].stiffness > R(0))) continue;
+        const real here = tree_element_reach(e, e->q - before->q[i]);
         if (here < reach) reach = here;
     }
+    return reach;
+}
+
+/* Contacts and elements that all stick may ask for more than any motion fulfils, by as little as two casters that are
+ * not quite in line. Each pass then stresses them against each other by as little more, until the weakest slips: far
+ * too many passes. Goes there at once, along the change of a pass, if that of the next is the same: rounding errors
+ * would stress them in vain. Returns false where nothing gives way. */
+RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
+    tree_problem *p = at->p;
+    tree_kept first, second, now;
+    tree_keep(&first, p);
+    tree_exact_pass(at);
+    tree_keep(&second, p);
+    (void)tree_see_all(at);
+    tree_exact_pass(at);
+    tree_keep(&now, p);
+    *passes += 2;
+    if (tree_change(p, &second, &now, &first, R(1)) > TREE_SAME * tree_change(p, &second, &now, &first, R(0)))
+        return false;
+    const real reach = tree_least_reach(at, &second);
     if (!(reach < TREE_FARTHEST)) return false;
     for (int32_t i = 0; i < p->contact_count; i++)
-        for (int m = 0; m < 2; m++) p->contact[i].impulse[m] += reach * (p->contact[i].impulse[m] - before.impulse[i][m]);
-    for (int32_t i = 0; i < p->element_count; i++) p->element[i].q += reach * (p->element[i].q - before.q[i]);
+        for (int m = 0; m < 2; m++)
+            p->contact[i].impulse[m] += reach * (p->contact[i].impulse[m] - second.impulse[i][m]);
+    for (int32_t i = 0; i < p->element_count; i++) p->element[i].q += reach * (p->element[i].q - second.q[i]);
     return true;
 }
 
@@ -453,6 +490,7 @@ static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
         ++*passes;
         if (tree_is_solved(at->p, residual, R(1))) return true;
         const bool stalls = pass > 1 && residual > TREE_WORTH_IT * before;
+        if (stalls && tree_is_solved(at->p, residual, TREE_NEARLY)) return true;
         before = residual;
         if (stalls && stresses < TREE_MOST_STRESSES && residual <= TREE_ALMOST * TREE_ALMOST * at->p->scale &&
             tree_stress_to_slip(at, passes)) {
@@ -469,6 +507,8 @@ static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
 RARE bool tree_search_along_path(tree_search *at, int32_t *passes) {
     tree_path path;
     tree_kept kept;
+    at->p->penalty = PENALTY; /* rounding: contacts that hold each other may need it */
+    for (int32_t i = 0; i < at->p->element_count; i++) tree_stiffen_element(&at->p->element[i], PENALTY);
     laconic_tree_start_path(at->p, &path);
     for (int32_t ahead = TREE_FIRST_AHEAD; *passes + ahead + TREE_TRIED + 1 <= TREE_MOST_PASSES; ahead = TREE_AHEAD) {
         for (int32_t pass = 0; pass < ahead; pass++) laconic_tree_follow_path(at->p, &path);

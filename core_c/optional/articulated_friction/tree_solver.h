@@ -39,7 +39,8 @@ typedef struct tree_element {
 typedef struct tree_problem {
     const tree_model *m;
     tree_vector free, nu;
-    real scale; /* twice the energy of the free motion */
+    real scale;   /* twice the energy of the free motion       */
+    real penalty; /* stiffness where something holds, over its mass */
     int32_t contact_count, element_count; /* elements of one row follow each other */
     tree_contact contact[TREE_WHEELS];
     tree_element element[TREE_ELEMENTS];

@@ -139,22 +139,28 @@ def test_steps_along_a_recorded_trajectory_satisfy_the_laws(name: str) -> None:
         assert Problem(vehicle, before, segment, 2e-3).residual(after) <= 1e-9
 
 
-def distance_from_clarabel(seed: int) -> float:
+def against_clarabel(seed: int) -> tuple[float, float]:
+    """Distance in the energy norm over the free motion; by how much the core's cost is above Clarabel's."""
     vehicle, start, segment, step_s = random_course(seed)
     before, after = one_step(vehicle, start, segment, step_s)
     problem = Problem(vehicle, before, segment, step_s)
-    return problem.distance(after.z, after.wheel_speed, *problem.solved()) / problem.size()
+    z, s = problem.solved()
+    distance = problem.distance(after.z, after.wheel_speed, z, s) / problem.size()
+    return distance, problem.cost(after.z, after.wheel_speed) - problem.cost(z, s)
 
 
 def test_a_conic_solver_finds_the_same_steps() -> None:
     pytest.importorskip("clarabel")
-    assert max(distance_from_clarabel(seed) for seed in range(40)) <= 1e-7
+    assert max(against_clarabel(seed)[0] for seed in range(40)) <= 1e-7
 
 
 @pytest.mark.nightly
 def test_a_conic_solver_finds_a_thousand_of_the_same_steps() -> None:
+    """To 1e-7, or Clarabel's own accuracy: there its step costs more."""
     pytest.importorskip("clarabel")
-    assert max(distance_from_clarabel(seed) for seed in range(5000, 6000)) <= 1e-7
+    found = [against_clarabel(seed) for seed in range(5000, 6000)]
+    assert all(distance <= 1e-7 or (distance <= 1e-4 and above < 0) for distance, above in found)
+    assert sum(distance <= 1e-7 for distance, _ in found) >= 980
 
 
 # ------------------------------------------------------------------------------ energy, rest, limits

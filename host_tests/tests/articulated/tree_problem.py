@@ -222,6 +222,24 @@ class Problem:
         dz, ds = z - other_z, s - other_s
         return float(np.sqrt(dz @ self.mass @ dz + np.sum((self.inertia + self.viscous) * ds ** 2)))
 
+    def cost(self, z: Vector, s: Vector) -> float:
+        """What the step minimises, over the square of the free motion's size; without stops and prescribed rates."""
+        total = 0.5 * z @ self.mass @ z - self.push @ z
+        total += float(np.sum(0.5 * (self.inertia + self.viscous) * s ** 2 - self.wheel_push * s))
+        total += float(np.sum(self.axle * np.abs(s)))
+        for i in range(self.count):
+            total += self.grip[i] * float(np.hypot(*(self.rows[i] @ z - self.rims[i] * s[i])))
+        for e in self.elements:
+            if np.isinf(e.high) or np.isinf(e.low):
+                continue
+            away = e.row[:self.n] @ z - e.target
+            turn = e.high * e.compliance  # from where on the element is at its bound
+            if e.compliance > 0 and abs(away) <= turn:
+                total += 0.5 * away ** 2 / e.compliance
+            else:
+                total += e.high * (abs(away) - 0.5 * turn)
+        return float(total) / self.size() ** 2
+
     # ------------------------------------------------------------------------------------- solving
 
     def solved(self) -> tuple[Vector, Vector]:

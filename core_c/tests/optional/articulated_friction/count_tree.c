@@ -11,13 +11,6 @@
 
 static unsigned long long seed = 12345;
 
-/* Nearly normal. */
-static double gust(void) {
-    double sum = 0;
-    for (int k = 0; k < 12; k++) sum += tree_random(&seed) / 2;
-    return sum;
-}
-
 static int plain(long steps) {
     const laconic_vehicle v = tree_rigid().hinged.base;
     laconic_plant plant;
@@ -27,7 +20,7 @@ static int plain(long steps) {
     memset(&in, 0, sizeof in);
     if (laconic_plant_start(&plant, &v, &laconic_auto, STEP, &start, NULL) != LACONIC_OK) return 2;
     for (long k = 0; k < steps; k++) {
-        for (int i = 0; k % 100 == 0 && i < 4; i++) in.voltage_V[i] = REAL(10 * gust());
+        for (int i = 0; k % 100 == 0 && i < 4; i++) in.voltage_V[i] = REAL(10 * tree_gust(&seed));
         if (laconic_friction_step(&plant.friction, &plant.model, STEP, &plant.state, &plant.slip, &in) != LACONIC_OK)
             return 3;
     }
@@ -53,8 +46,8 @@ int main(int count, char **words) {
     laconic_tree_state s = tree_state(&m, &start);
     laconic_tree_input in = tree_nothing();
     for (long k = 0; k < steps; k++) {
-        for (int i = 0; k % 100 == 0 && i < m.wheel_count; i++) in.hinged.base.voltage_V[i] = REAL(10 * gust());
-        for (int b = 0; k % 100 == 0 && b < m.body_count; b++) in.hinge_angle_rad[b] = REAL(0.4 * gust());
+        for (int i = 0; k % 100 == 0 && i < m.wheel_count; i++) in.hinged.base.voltage_V[i] = REAL(10 * tree_gust(&seed));
+        for (int b = 0; k % 100 == 0 && b < m.body_count; b++) in.hinge_angle_rad[b] = REAL(0.4 * tree_gust(&seed));
         if (laconic_tree_step(&m, STEP, &s, &in, NULL) != LACONIC_OK) return 3;
         passes += s.passes;
     }

@@ -189,4 +189,11 @@ static inline double tree_random(unsigned long long *seed) {
     return (double)(*seed >> 11) / 4503599627370496.0 - 1;
 }
 
+/* Nearly normal. */
+static inline double tree_gust(unsigned long long *seed) {
+    double sum = 0;
+    for (int k = 0; k < 12; k++) sum += tree_random(seed) / 2;
+    return sum;
+}
+
 #endif
