@@ -1,6 +1,7 @@
 /* Checks that every number of a vehicle with hinges on ground with friction is usable. */
 #include "articulated_vehicle.h"
-#include "tree_vehicle.h"
+#include "geometry.h"
+#include "tree_posture.h"
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 

@@ -39,8 +39,7 @@ static real tree_drawn_A(const tree_model *m, const real command_V[], const tree
     for (int32_t i = 0; i < m->wheel_count + m->body_count; i++) {
         const laconic_tree_motor *a = &m->motor[i];
         if (a->circuit != LACONIC_MOTOR_DRIVEN || a->ampere_per_Nm == R(0)) continue;
-        const tree_motor_state s =
-            laconic_tree_motor_at(m, i, command_V[i], tree_axis_speed(m, state, i), terminal_V);
+        const tree_motor_state s = laconic_tree_motor_at(m, i, command_V[i], tree_axis_speed(m, state, i), terminal_V);
         const bool whole = s.limit == LACONIC_LIMIT_VOLTAGE;
         const real duty = whole ? (command_V[i] > R(0) ? R(1) : R(-1)) : s.voltage_V / terminal_V;
         const real current = s.current_A * duty;

@@ -121,8 +121,8 @@ static inline void tree_velocities(vector velocity[], const tree_posture *p, con
         const real before = velocity[on].z, rate = before + z[2 + b];
         x[b] = x[on] - before * (p->hinge_y[b] - p->hinge_y[on]);
         y[b] = y[on] + before * (p->hinge_x[b] - p->hinge_x[on]);
-        velocity[b] = vector_of(x[b] - rate * (p->com_y[b] - p->hinge_y[b]),
-                                y[b] + rate * (p->com_x[b] - p->hinge_x[b]), rate);
+        velocity[b] =
+            vector_of(x[b] - rate * (p->com_y[b] - p->hinge_y[b]), y[b] + rate * (p->com_x[b] - p->hinge_x[b]), rate);
     }
 }
 
@@ -239,6 +239,23 @@ static inline void tree_forward(real z[], const tree_vector *zeta, const tree_fa
         z[3 + j] = rest * f->inverse[j];
     }
 }
+
+/* ---------------------------------------------------------------------------- parts of preparing -- */
+
+static inline bool tree_has_servo(const laconic_tree_hinge *hinge) {
+    return hinge->servo_gain_Nm_per_rad > R(0) || hinge->servo_damping_Nms > R(0);
+}
+
+static inline bool tree_has_loop(const laconic_tree_hinge *hinge) {
+    return hinge->loop_V_per_rad != R(0) || hinge->loop_Vs_per_rad != R(0);
+}
+
+static inline bool tree_has_stops(const laconic_tree_hinge *hinge) {
+    return hinge->stop_low_rad != R(0) || hinge->stop_high_rad != R(0);
+}
+
+/* Every number by itself, and what hinges and wheels need of each other. */
+laconic_status laconic_tree_check(const laconic_tree_vehicle *vehicle, laconic_refusal *why);
 
 #endif
 #endif

@@ -1,5 +1,6 @@
 /* A vehicle with hinges on ground with friction → the constants of its tree, contacts, motors and loads. */
-#include "tree_vehicle.h"
+#include "geometry.h"
+#include "tree_posture.h"
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
@@ -174,8 +175,8 @@ static laconic_status tree_check_inertias(laconic_tree_model *m, laconic_refusal
     const real whole = m->body[0].yaw_inertia_kgm2;
     for (int32_t b = 1; b <= m->body_count; b++) {
         tree_body *link = &m->body[b];
-        const real own = link->yaw_inertia_kgm2 +
-                         link->mass_kg * (link->com_x_m * link->com_x_m + link->com_y_m * link->com_y_m);
+        const real own =
+            link->yaw_inertia_kgm2 + link->mass_kg * (link->com_x_m * link->com_x_m + link->com_y_m * link->com_y_m);
         if (own > TREE_LEAST_INERTIA * whole) continue;
         if (link->hinge != LACONIC_HINGE_PRESCRIBED)
             return refuse(why, LACONIC_MASSLESS_HINGE, (laconic_field)LACONIC_FIELD_OF_BODY_YAW_INERTIA, b, own, R(0));

@@ -19,11 +19,11 @@
 typedef struct tree_contact {
     const tree_body *on;
     const laconic_tree_rim *wheel;
-    tree_row row[2];              /* along; k across                                    */
+    tree_row row[2];               /* along; k across                                    */
     real along, cross_row, across; /* row[0]·row[0], row[0]·row[1], row[1]·row[1]        */
     real mobility, inverse_mobility, lateral_mass, row_mass[2];
     friction_load load;
-    real speed, impulse[2];       /* found; on entry the guess of the impulse           */
+    real speed, impulse[2]; /* found; on entry the guess of the impulse           */
 } tree_contact;
 
 typedef struct tree_element {
@@ -31,16 +31,16 @@ typedef struct tree_element {
     const tree_row *row;
     real low, high; /* of q; ∓LACONIC_REAL_MAX: no bound */
     real compliance, target, mobility;
-    real all, inverse_all;      /* mobility + compliance                                          */
-    real share, stiffness;      /* of the law inside: q = share·q + stiffness (x − target)        */
-    real q;                     /* found; on entry the guess                                      */
+    real all, inverse_all; /* mobility + compliance                                          */
+    real share, stiffness; /* of the law inside: q = share·q + stiffness (x − target)        */
+    real q;                /* found; on entry the guess                                      */
 } tree_element;
 
 typedef struct tree_problem {
     const tree_model *m;
     tree_vector free, nu;
-    real scale;   /* twice the energy of the free motion       */
-    real penalty; /* stiffness where something holds, over its mass */
+    real scale;                           /* twice the energy of the free motion       */
+    real penalty;                         /* stiffness where something holds, over its mass */
     int32_t contact_count, element_count; /* elements of one row follow each other */
     tree_contact contact[TREE_WHEELS];
     tree_element element[TREE_ELEMENTS];
@@ -53,8 +53,8 @@ void laconic_tree_prepare_problem(tree_problem *p);
 /* Finds nu, speeds, impulses and q. Returns the number of passes; 0: refused, as friction_solver.h states. */
 int32_t laconic_tree_solve(tree_problem *p);
 
-/* What both kinds of pass give for a contact: impulse = impulse + S slip of a standing wheel, speed = speed + turn·slip,
- * both for the change of ν in the pass. */
+/* What both kinds of pass give for a contact, for the change of ν in the pass: impulse = impulse + S slip of a standing
+ * wheel, speed = speed + turn·slip. */
 typedef struct tree_law {
     real xx, xy, yy, impulse[2], speed, turn[2];
 } tree_law;
@@ -89,6 +89,36 @@ static inline bool tree_unbounded(const tree_element *e) {
 }
 static inline bool tree_one_sided(const tree_element *e) {
     return e->high >= LACONIC_REAL_MAX || e->low <= -LACONIC_REAL_MAX;
+}
+
+/* ------------------------------------------------------------------------------- exact passes -- */
+
+/* What a pass sees of a contact. */
+typedef struct tree_sight {
+    real moved[2], t[2], length, axle, firm, rest;
+    bool locked;
+} tree_sight;
+
+typedef struct tree_search {
+    tree_problem *p;
+    tree_sight sight[TREE_WHEELS];
+    tree_element_law element[TREE_ELEMENTS];
+} tree_search;
+
+/* Looks at all contacts and elements. Returns the square of their residual. */
+real laconic_tree_see(tree_search *at);
+
+/* Replaces each by its law as it was seen, and moves to the solution of these. */
+void laconic_tree_exact_pass(tree_search *at);
+
+/* Sets the law of an element inside its bounds; `of_mass`: the penalty, over the mass that it holds. */
+void laconic_tree_stiffen(tree_element *e, real of_mass);
+
+/* A wheel's speed, and how its resistance grows with it: friction_internals.h. */
+static inline turning tree_turning(const tree_contact *c, real added, real axle, real push) {
+    friction_wheel of;
+    of.inertia = c->wheel->inertia_kgm2;
+    return turning_of(&of, &c->load, added, axle, push);
 }
 
 #endif

@@ -135,8 +135,7 @@ static void tree_fill_motion(laconic_articulated_motion *out, const tree_model *
     facing[0] = s->heading.fraction;
     for (int32_t b = 1; b <= m->body_count; b++) {
         laconic_heading now = ALL_ZERO;
-        now.fraction = facing[b] =
-            (laconic_binary_angle)(facing[m->body[b].parent] + s->hinge[b - 1].fraction);
+        now.fraction = facing[b] = (laconic_binary_angle)(facing[m->body[b].parent] + s->hinge[b - 1].fraction);
         out->hinge_angle_rad[b - 1] = heading_unwrapped(&s->hinge[b - 1]);
         out->hinge_rate_rad_per_s[b - 1] = s->z[2 + b];
         out->body_heading_rad[b - 1] = heading_wrapped(&now);

@@ -1,9 +1,9 @@
 /* One step of a tree on ground with friction: backward Euler for bodies, hinges and wheels together, first order.
  *
  *   1. loops and sampled servos look; loads by statics; the supply's voltage
- *   2. the velocities of all bodies, unchanged in the world, at the angles ψ^ = ψ + ½ h ψ' in the axes at the end: their
- *      momenta Jᵀ m V, and M. Solving M z* = Jᵀ m V would project them onto the hinges there; a projection does not
- *      lengthen, so free motion never gains energy
+ *   2. the velocities of all bodies, unchanged in the world, at the angles ψ^ = ψ + ½ h ψ' in the axes at the end:
+ *      their momenta Jᵀ m V, and M. Solving M z* = Jᵀ m V would project them onto the hinges there. A projection does
+ *      not lengthen, so free motion never gains energy
  *   3. what is linear in ψ' joins M: viscous friction, springs at the next ψ^ + h ψ', drives without limits. All other
  *      laws of hinges are elements of the convex problem of tree_solver.h
  *   4. ψ⁺ = ψ + ½ h (ψ' + ψ'⁺), pose and wheel angles by the mean of old and new speeds, energies by kind
@@ -28,8 +28,8 @@ static void tree_find_posture(tree_part *p, const tree_state *s) {
     for (int32_t j = 0; j < m->body_count; j++) {
         const tree_body *link = &m->body[j + 1];
         const real turn = R(0.5) * p->h * s->z[3 + j];
-        turned[j] = direction_of_binary_angle(
-            (laconic_binary_angle)(s->hinge[j].fraction + laconic_binary_angle_of(turn)));
+        turned[j] =
+            direction_of_binary_angle((laconic_binary_angle)(s->hinge[j].fraction + laconic_binary_angle_of(turn)));
         p->ahead[j] = R(0);
         if (link->stiffness_Nm > R(0) || link->stops || link->servo)
             p->ahead[j] = heading_unwrapped(&s->hinge[j]) + turn;
@@ -65,8 +65,7 @@ static void tree_pull(tree_part *p, const tree_state *s) {
     const vector force = tree_seen(p->end, in->world_force_N), down = tree_seen(p->end, p->m->pull_m_per_s2);
     p->pull[0] = plus(p->pull[0], force);
     p->pull[0].z += in->world_force_point_m[0] * force.y - in->world_force_point_m[1] * force.x;
-    for (int32_t b = 0; b <= p->m->body_count; b++)
-        p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));
+    for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));
 }
 
 static vector tree_momentum(const tree_part *p, int32_t b) {
@@ -219,16 +218,13 @@ static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_stat
     const laconic_tree_rim *w = c->wheel;
     const laconic_tree_motor *a = &p->m->motor[i];
     const bool driven = a->circuit == LACONIC_MOTOR_DRIVEN;
-    const real volts = !driven               ? R(0)
-                       : p->terminal_V < R(0) ? p->command_V[i]
-                                              : cut(p->command_V[i], p->terminal_V);
+    const real volts = !driven ? R(0) : p->terminal_V < R(0) ? p->command_V[i] : cut(p->command_V[i], p->terminal_V);
     friction_load *l = &c->load;
     l->grip = p->h * w->friction_coefficient * p->loads.carried_N[i];
     l->axle = p->h * w->dry_Nm;
     l->drive = p->h * a->gain_Nm_per_V * volts;
     l->drive_slope = a->circuit == LACONIC_MOTOR_OPEN ? R(0) : p->h * a->back_emf_Nms;
-    l->drive_limit =
-        driven && a->torque_limit_Nm < LACONIC_REAL_MAX ? p->h * a->torque_limit_Nm : LACONIC_REAL_MAX;
+    l->drive_limit = driven && a->torque_limit_Nm < LACONIC_REAL_MAX ? p->h * a->torque_limit_Nm : LACONIC_REAL_MAX;
     l->viscous = p->h * a->viscous_Nms;
     l->free_speed = s->wheel_speed_rad_per_s[i] + p->h * p->in->hinged.base.axle_torque_Nm[i] / w->inertia_kgm2;
     if (!w->locked) return;
@@ -335,14 +331,17 @@ RARE laconic_status tree_refuse_input(const tree_model *m, const laconic_tree_in
     laconic_status status = LACONIC_OK;
     for (int32_t i = 0; status == LACONIC_OK && i < m->wheel_count; i++) {
         status = tree_finite(h->base.voltage_V[i], LACONIC_FIELD_VOLTAGE, i + 1, why);
-        if (status == LACONIC_OK) status = tree_finite(h->base.axle_torque_Nm[i], LACONIC_FIELD_AXLE_TORQUE, i + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(h->base.axle_torque_Nm[i], LACONIC_FIELD_AXLE_TORQUE, i + 1, why);
     }
     for (int32_t b = 0; status == LACONIC_OK && b < m->body_count; b++) {
         status = tree_finite(h->hinge_voltage_V[b], LACONIC_FIELD_OF_HINGE_VOLTAGE, b + 1, why);
-        if (status == LACONIC_OK) status = tree_finite(h->hinge_torque_Nm[b], LACONIC_FIELD_OF_HINGE_TORQUE, b + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(h->hinge_torque_Nm[b], LACONIC_FIELD_OF_HINGE_TORQUE, b + 1, why);
         if (status == LACONIC_OK)
             status = tree_finite(h->hinge_rate_rad_per_s[b], LACONIC_FIELD_OF_HINGE_RATE, b + 1, why);
-        if (status == LACONIC_OK) status = tree_finite(in->hinge_angle_rad[b], LACONIC_FIELD_OF_HINGE_ANGLE, b + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(in->hinge_angle_rad[b], LACONIC_FIELD_OF_HINGE_ANGLE, b + 1, why);
     }
     for (int32_t k = 0; status == LACONIC_OK && k < 2; k++) {
         status = tree_finite(h->base.body_force_N[k], LACONIC_FIELD_BODY_FORCE, k + 1, why);

@@ -31,17 +31,17 @@ typedef struct tree_part {
     const laconic_tree_input *in;
     real h;
     tree_posture at;
-    direction end;                  /* heading of body 0 at the end, where something depends on it */
-    vector carried[TREE_BODIES];    /* the bodies' velocities, in the axes at the end               */
-    vector pull[TREE_BODIES];       /* forces and moments from outside, axes at the end             */
-    real ahead[TREE_HINGES];        /* ψ^ of the hinges with springs, stops or servos               */
+    direction end;               /* heading of body 0 at the end, where something depends on it */
+    vector carried[TREE_BODIES]; /* the bodies' velocities, in the axes at the end               */
+    vector pull[TREE_BODIES];    /* forces and moments from outside, axes at the end             */
+    real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */
     tree_place_of_wheel place[TREE_WHEELS];
     tree_loads loads;
     real command_V[LACONIC_TREE_AXES], terminal_V;
     tree_factor factor;
     tree_problem problem;
     tree_hinge_part hinge[TREE_HINGES];
-    int32_t scrub[TREE_WHEELS];     /* elements; -1: none                                            */
+    int32_t scrub[TREE_WHEELS]; /* elements; -1: none                                            */
     real z[LACONIC_TREE_SPEEDS];
     int32_t passes;
 } tree_part;

@@ -1,5 +1,5 @@
-/* The texts and traits that the lists of vehicle.h, sensors.h, articulated.h and articulated_friction.h give each field:
- * its name in FMUs, its key in a scene, its traits. */
+/* The texts and traits that the lists of vehicle.h, sensors.h, articulated.h and articulated_friction.h give each
+ * field: its name in FMUs, its key in a scene, its traits. */
 #include "common.h"
 #include "laconic/articulated_friction.h"
 

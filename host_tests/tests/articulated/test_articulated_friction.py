@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 import pytest
 from articulated_runner import trajectory
-from random_trees import random_segment, random_start, random_tree
 from tree_problem import Problem
 from tree_runner import (
     Case,
@@ -17,6 +16,9 @@ from tree_runner import (
     course_words,
     end_of,
     input_words,
+    random_segment,
+    random_start,
+    random_tree,
     run,
     start_words,
     state_of,

@@ -46,7 +46,8 @@ int main(int count, char **words) {
     laconic_tree_state s = tree_state(&m, &start);
     laconic_tree_input in = tree_nothing();
     for (long k = 0; k < steps; k++) {
-        for (int i = 0; k % 100 == 0 && i < m.wheel_count; i++) in.hinged.base.voltage_V[i] = REAL(10 * tree_gust(&seed));
+        for (int i = 0; k % 100 == 0 && i < m.wheel_count; i++)
+            in.hinged.base.voltage_V[i] = REAL(10 * tree_gust(&seed));
         for (int b = 0; k % 100 == 0 && b < m.body_count; b++) in.hinge_angle_rad[b] = REAL(0.4 * tree_gust(&seed));
         if (laconic_tree_step(&m, STEP, &s, &in, NULL) != LACONIC_OK) return 3;
         passes += s.passes;

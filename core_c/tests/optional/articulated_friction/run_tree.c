@@ -4,8 +4,8 @@
  *            supply supply_resistance current_limit winding_resistance viscous
  *            H {parent kind hinge_x hinge_y mass com_x com_y inertia damping stiffness rest gain com_z hitch dry
  *            stop_low stop_high servo_gain servo_damping servo_limit viscous resistance current_limit loop_V loop_Vs
- *            period}  N {body kind x y axle roller radius inertia gain damping locked friction drag axle_friction circuit
- *            load scrub_radius scrub_fade}  S {x y}
+ *            period}  N {body kind x y axle roller radius inertia gain damping locked friction drag axle_friction
+ *            circuit load scrub_radius scrub_fade}  S {x y}
  *   start    vx vy yaw_rate x y heading  H angles  H rates  N wheel speeds
  *   input    N voltages, N torques, 3 body wrench, 2 world force, 2 point, H voltages, H torques, H rates, H angles
  *   run      step steps            as often as said
@@ -54,15 +54,15 @@ static void read_body(int b) {
     laconic_tree_hinge *hinge = &vehicle.hinge[b];
     body->parent = (int32_t)number();
     body->hinge = (laconic_hinge_kind)(int)number();
-    laconic_real *first[] = {&body->hinge_x_m, &body->hinge_y_m, &body->mass_kg, &body->com_x_m, &body->com_y_m,
-                             &body->yaw_inertia_kgm2, &body->damping_Nms, &body->stiffness_Nm, &body->rest_rad,
-                             &body->gain_Nm_per_V, &hinge->com_z_m};
+    laconic_real *first[] = {&body->hinge_x_m, &body->hinge_y_m,        &body->mass_kg,     &body->com_x_m,
+                             &body->com_y_m,   &body->yaw_inertia_kgm2, &body->damping_Nms, &body->stiffness_Nm,
+                             &body->rest_rad,  &body->gain_Nm_per_V,    &hinge->com_z_m};
     read_numbers(first, 11);
     hinge->hitch = number() > 0;
-    laconic_real *second[] = {&hinge->dry_friction_Nm, &hinge->stop_low_rad, &hinge->stop_high_rad,
-                              &hinge->servo_gain_Nm_per_rad, &hinge->servo_damping_Nms, &hinge->servo_limit_Nm,
-                              &hinge->viscous_friction_Nms, &hinge->winding_resistance_ohm, &hinge->current_limit_A,
-                              &hinge->loop_V_per_rad, &hinge->loop_Vs_per_rad, &hinge->control_period_s};
+    laconic_real *second[] = {&hinge->dry_friction_Nm,       &hinge->stop_low_rad,           &hinge->stop_high_rad,
+                              &hinge->servo_gain_Nm_per_rad, &hinge->servo_damping_Nms,      &hinge->servo_limit_Nm,
+                              &hinge->viscous_friction_Nms,  &hinge->winding_resistance_ohm, &hinge->current_limit_A,
+                              &hinge->loop_V_per_rad,        &hinge->loop_Vs_per_rad,        &hinge->control_period_s};
     read_numbers(second, 12);
 }
 
@@ -71,8 +71,14 @@ static void read_wheel(int i) {
     laconic_tree_wheel *more = &vehicle.wheel[i];
     vehicle.hinged.wheel_body[i] = (int32_t)number();
     wheel->kind = (laconic_wheel_kind)(int)number();
-    laconic_real *first[] = {&wheel->x_m, &wheel->y_m, &wheel->axle_rad, &wheel->roller_rad, &wheel->own_radius_m,
-                             &wheel->own_inertia_kgm2, &wheel->own_motor_gain_Nm_per_V, &wheel->own_motor_damping_Nms};
+    laconic_real *first[] = {&wheel->x_m,
+                             &wheel->y_m,
+                             &wheel->axle_rad,
+                             &wheel->roller_rad,
+                             &wheel->own_radius_m,
+                             &wheel->own_inertia_kgm2,
+                             &wheel->own_motor_gain_Nm_per_V,
+                             &wheel->own_motor_damping_Nms};
     read_numbers(first, 8);
     wheel->locked = number() > 0;
     laconic_real *second[] = {&wheel->own_friction_coefficient, &wheel->own_roller_drag, &wheel->own_axle_friction_Nm};
@@ -86,12 +92,21 @@ static void read_vehicle(void) {
     laconic_vehicle *base = &vehicle.hinged.base;
     memset(&vehicle, 0, sizeof vehicle);
     base->wheel_radius_m = 1;
-    laconic_real *numbers[] = {&base->mass_kg, &base->yaw_inertia_kgm2, &base->com_x_m, &base->com_y_m, &base->com_z_m,
-                               &base->ground.friction_coefficient, &base->ground.roller_drag,
-                               &base->ground.axle_friction_Nm, &base->ground.slope_rad,
-                               &base->ground.slope_heading_rad, &base->drive.supply_V,
-                               &base->drive.supply_resistance_ohm, &base->drive.current_limit_A,
-                               &base->drive.winding_resistance_ohm, &base->drive.viscous_friction_Nms};
+    laconic_real *numbers[] = {&base->mass_kg,
+                               &base->yaw_inertia_kgm2,
+                               &base->com_x_m,
+                               &base->com_y_m,
+                               &base->com_z_m,
+                               &base->ground.friction_coefficient,
+                               &base->ground.roller_drag,
+                               &base->ground.axle_friction_Nm,
+                               &base->ground.slope_rad,
+                               &base->ground.slope_heading_rad,
+                               &base->drive.supply_V,
+                               &base->drive.supply_resistance_ohm,
+                               &base->drive.current_limit_A,
+                               &base->drive.winding_resistance_ohm,
+                               &base->drive.viscous_friction_Nms};
     read_numbers(numbers, 15);
     vehicle.hinged.body_count = (int32_t)number();
     for (int b = 0; b < vehicle.hinged.body_count; b++) read_body(b);
@@ -109,8 +124,8 @@ static void read_start(void) {
     laconic_tree_start start;
     memset(&start, 0, sizeof start);
     laconic_articulated_start *h = &start.hinged;
-    laconic_real *numbers[] = {&h->velocity_m_per_s[0], &h->velocity_m_per_s[1], &h->yaw_rate_rad_per_s, &h->x_m,
-                               &h->y_m, &h->heading_rad};
+    laconic_real *numbers[] = {
+        &h->velocity_m_per_s[0], &h->velocity_m_per_s[1], &h->yaw_rate_rad_per_s, &h->x_m, &h->y_m, &h->heading_rad};
     read_numbers(numbers, 6);
     for (int b = 0; b < model.body_count; b++) h->hinge_angle_rad[b] = real_number();
     for (int b = 0; b < model.body_count; b++) h->hinge_rate_rad_per_s[b] = real_number();
@@ -188,8 +203,9 @@ static void print_books(void) {
     laconic_tree_outputs o;
     laconic_tree_outputs_of(&o, &model, &state);
     const laconic_real books[] = {o.motion.energy_J, o.spring_energy_J, o.supply_energy_J, o.outer_work_J,
-                                  o.servo_work_J, o.slip_loss_J, o.scrub_loss_J, o.axle_loss_J, o.hinge_loss_J,
-                                  o.stop_loss_J, o.motor_loss_J, o.supply_loss_J, o.numerical_loss_J};
+                                  o.servo_work_J,    o.slip_loss_J,     o.scrub_loss_J,    o.axle_loss_J,
+                                  o.hinge_loss_J,    o.stop_loss_J,     o.motor_loss_J,    o.supply_loss_J,
+                                  o.numerical_loss_J};
     print_many(books, 13);
     printf("\n");
 }

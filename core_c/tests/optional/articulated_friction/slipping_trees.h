@@ -138,7 +138,8 @@ static inline laconic_tree_vehicle tree_trailer(double mu) {
 static inline laconic_tree_vehicle tree_rigid(void) {
     laconic_tree_vehicle v = tree_carriage(36, 2.2, 0.8);
     for (int k = 0; k < 4; k++)
-        tree_drive(tree_wheel(&v, 0, k == 0 || k == 3 ? 0.25 : -0.25, k < 2 ? 0.25 : -0.25, 0.05, 0.004, 0.05), 0.35, 0.25);
+        tree_drive(tree_wheel(&v, 0, k == 0 || k == 3 ? 0.25 : -0.25, k < 2 ? 0.25 : -0.25, 0.05, 0.004, 0.05), 0.35,
+                   0.25);
     return v;
 }
 
@@ -181,6 +182,14 @@ static inline laconic_tree_outputs tree_outputs(const laconic_tree_model *m, con
     memset(&out, 0, sizeof out);
     laconic_tree_outputs_of(&out, m, s);
     return out;
+}
+
+/* By how much the books of energy do not close. */
+static inline double tree_books_off(const laconic_tree_outputs *o, double start) {
+    const double in = (double)(o->supply_energy_J + o->outer_work_J + o->servo_work_J);
+    const double out = (double)(o->slip_loss_J + o->scrub_loss_J + o->axle_loss_J + o->hinge_loss_J + o->stop_loss_J +
+                                o->motor_loss_J + o->supply_loss_J + o->numerical_loss_J);
+    return (double)(o->motion.energy_J + o->spring_energy_J) - start - (in - out);
 }
 
 /* Numbers that look random: from −1 to 1. */

@@ -1,4 +1,5 @@
-/* Tests of preparing a tree: refusals that name body or wheel with the remedy, and normal loads by statics. */
+/* Tests of preparing a tree: refusals that name body or wheel with the remedy, normal loads by statics, and trees that
+ * other models describe, too. */
 #include "slipping_trees.h"
 
 #define FIELD(name) ((laconic_field)LACONIC_FIELD_OF_##name)
@@ -37,7 +38,8 @@ static void a_coordinated_hinge_is_refused_with_the_remedy(void) {
 static void numbers_without_effect_on_their_hinge_are_refused(void) {
     laconic_tree_vehicle v = tree_swerve();
     v.hinged.body[2].hinge = LACONIC_HINGE_PRESCRIBED;
-    assert_prepare_refuses(v, LACONIC_NO_EFFECT_ON_HINGE, FIELD(SERVO_GAIN), 3, "vehicle.body[3].servo_gain_Nm_per_rad");
+    assert_prepare_refuses(v, LACONIC_NO_EFFECT_ON_HINGE, FIELD(SERVO_GAIN), 3,
+                           "vehicle.body[3].servo_gain_Nm_per_rad");
     v = tree_swerve();
     v.hinge[0].loop_V_per_rad = 2;
     assert_prepare_refuses(v, LACONIC_NO_EFFECT_ON_HINGE, FIELD(LOOP_ANGLE_GAIN), 1, "vehicle.body[1].loop_V_per_rad");
@@ -70,7 +72,8 @@ static void a_limit_without_what_it_limits_is_refused(void) {
 static void stops_in_the_wrong_order_are_refused(void) {
     laconic_tree_vehicle v = tree_loader();
     v.hinge[0].stop_low_rad = 1;
-    assert_prepare_refuses(v, LACONIC_ABOVE_LIMIT, FIELD(HINGE_STOP_LOW), 1, "vehicle.body[1].stop_low_rad: 1 is above 0.7");
+    assert_prepare_refuses(v, LACONIC_ABOVE_LIMIT, FIELD(HINGE_STOP_LOW), 1,
+                           "vehicle.body[1].stop_low_rad: 1 is above 0.7");
 }
 
 static void every_number_of_hinges_and_wheels_is_checked(void) {
@@ -185,6 +188,114 @@ static void braking_shifts_the_load_and_a_wheel_that_would_pull_lifts(void) {
     TEST_ASSERT_EQUAL(1, out.contact_state[0]);
 }
 
+/* --------------------------------------------------------------------- limits to other models -- */
+
+/* Pose is by the mean of velocities here and along the arc there: the same at first order. */
+static void without_hinges_it_is_the_friction_step_of_rigid_vehicles(void) {
+    laconic_tree_vehicle v = tree_rigid();
+    v.hinged.base.com_z_m = REAL(0.12);
+    v.hinged.base.com_x_m = REAL(0.03);
+    v.hinged.base.payload.mass_kg = 4;
+    v.hinged.base.payload.x_m = REAL(0.1);
+    v.hinged.base.wheel[1].kind = LACONIC_WHEEL_ROLLER;
+    v.hinged.base.wheel[1].roller_rad = REAL(PI / 4);
+    v.hinged.base.wheel[1].own_roller_drag = REAL(0.4);
+    v.hinged.base.wheel[3].locked = true;
+    v.hinged.base.drive.winding_resistance_ohm = 1;
+    v.hinged.base.drive.supply_V = 9;
+    v.hinged.base.drive.supply_resistance_ohm = REAL(0.05);
+    v.hinged.base.drive.current_limit_A = 7;
+    const laconic_tree_model m = tree_model(v);
+    laconic_plant plant;
+    laconic_start rigid;
+    laconic_tree_start start = tree_start_at(0.6, -0.2, 0.5);
+    laconic_tree_input in = tree_nothing();
+    memset(&rigid, 0, sizeof rigid);
+    memset(&plant, 0, sizeof plant);
+    laconic_model of_body; /* ν of these velocities */
+    TREE_TAKEN(laconic_prepare(&of_body, &v.hinged.base, &tree_why));
+    rigid.nu_rad_per_s[0] = REAL(0.6 / 0.08);
+    rigid.nu_rad_per_s[1] = REAL(-0.2 / 0.08);
+    rigid.nu_rad_per_s[2] = REAL(0.5) * of_body.yaw_scale;
+    TREE_TAKEN(laconic_plant_start(&plant, &v.hinged.base, &laconic_auto, REAL(0.001), &rigid, &tree_why));
+    laconic_tree_state s = tree_state(&m, &start);
+    for (int i = 0; i < 4; i++) in.hinged.base.voltage_V[i] = REAL(i < 3 ? 12 : -3);
+    in.hinged.base.body_force_N[1] = 5;
+    tree_run(&m, &s, &in, 0.001, 400);
+    for (int k = 0; k < 400; k++)
+        TREE_TAKEN(laconic_friction_step(&plant.friction, &plant.model, REAL(0.001), &plant.state, &plant.slip,
+                                         &in.hinged.base));
+    for (int i = 0; i < 4; i++) {
+        ASSERT_NEAR(EITHER(1e-8, 0.02), plant.slip.wheel_speed_rad_per_s[i], s.wheel_speed_rad_per_s[i]);
+        ASSERT_NEAR(EITHER(1e-6, 0.2), plant.slip.normal_N[i], s.normal_N[i]);
+        ASSERT_NEAR(EITHER(1e-7, 0.01), plant.slip.current_A[i], s.current_A[i]);
+        TEST_ASSERT_EQUAL(plant.slip.limit[i], s.limit[i]);
+    }
+    ASSERT_NEAR(EITHER(1e-8, 0.01), plant.slip.supply_voltage_V, s.supply_voltage_V);
+    ASSERT_NEAR(EITHER(1e-8, 1e-3), laconic_friction_energy_J(&plant.friction, &plant.state, &plant.slip),
+                tree_outputs(&m, &s).motion.energy_J);
+    ASSERT_NEAR(EITHER(1e-7, 0.1), plant.slip.supply_energy_J.value, s.supply_energy_J.value);
+    ASSERT_NEAR(EITHER(1e-7, 0.1), plant.slip.slip_loss_J.value, s.slip_loss_J.value);
+    ASSERT_NEAR(EITHER(1e-7, 0.1), plant.slip.motor_loss_J.value, s.motor_loss_J.value);
+    ASSERT_NEAR(1e-4, plant.state.x_m.value, s.x_m.value);
+    ASSERT_NEAR(1e-4, plant.state.y_m.value, s.y_m.value);
+}
+
+/* A prescribed hinge at rate 0 is one rigid body. */
+static void a_held_hinge_is_a_rigid_body(void) {
+    laconic_tree_vehicle v = tree_rigid(), merged = tree_rigid();
+    const int b = tree_body(&v, 0, -0.2, 0.1, 6, 0.2, -0.1, 0.05);
+    v.hinged.body[b - 1].hinge = LACONIC_HINGE_PRESCRIBED;
+    const double x = -0.3 / 7, y = 0.15 / 7; /* of the common centre of mass: 36 kg at 0, 6 kg at (−0.3, 0.15) */
+    merged.hinged.base.mass_kg = 42;
+    merged.hinged.base.com_x_m = REAL(x);
+    merged.hinged.base.com_y_m = REAL(y);
+    merged.hinged.base.yaw_inertia_kgm2 = REAL(2.2 + 0.2 + 36.0 * 6 / 42 * (0.3 * 0.3 + 0.15 * 0.15));
+    for (int i = 0; i < 4; i++) v.wheel[i].load_N = merged.wheel[i].load_N = 100;
+    const laconic_tree_model a = tree_model(v), c = tree_model(merged);
+    const double w = 0.8;
+    laconic_tree_start one = tree_start_at(0.5, 0.3, w), other = tree_start_at(0.5 - w * y, 0.3 + w * x, w);
+    laconic_tree_state p = tree_state(&a, &one), q = tree_state(&c, &other);
+    laconic_tree_input in = tree_nothing();
+    for (int i = 0; i < 4; i++) in.hinged.base.voltage_V[i] = REAL(3 + i);
+    tree_run(&a, &p, &in, 0.001, 300);
+    tree_run(&c, &q, &in, 0.001, 300);
+    ASSERT_NEAR(EITHER(1e-9, 1e-3), q.z[2], p.z[2]);
+    ASSERT_NEAR(EITHER(1e-9, 1e-3), q.z[0] + q.z[2] * REAL(y), p.z[0]);
+    ASSERT_NEAR(EITHER(1e-9, 1e-3), q.z[1] - q.z[2] * REAL(x), p.z[1]);
+    for (int i = 0; i < 4; i++) ASSERT_NEAR(EITHER(1e-8, 1e-2), q.wheel_speed_rad_per_s[i], p.wheel_speed_rad_per_s[i]);
+}
+
+/* Chains: bodies on bodies on bodies. */
+static void a_chain_of_trailers_keeps_its_books_and_comes_to_rest(void) {
+    laconic_tree_vehicle v = tree_casters();
+    int on = 0;
+    for (int k = 0; k < 4; k++) {
+        on = tree_body(&v, on, k == 0 ? -0.3 : -0.5, 0, 5, 0.1, -0.3, 0);
+        v.hinge[on - 1].hitch = true;
+        v.hinge[on - 1].dry_friction_Nm = REAL(0.01);
+        tree_wheel(&v, on, -0.4, 0.15, 0.05, 1e-3, 0.01);
+        tree_wheel(&v, on, -0.4, -0.15, 0.05, 1e-3, 0.01);
+    }
+    const laconic_tree_model m = tree_model(v);
+    laconic_tree_start start = tree_start_at(0.8, 0, 1);
+    for (int k = 0; k < 6; k++) start.hinged.hinge_angle_rad[k] = REAL(0.2 * k - 0.4);
+    laconic_tree_state s = tree_state(&m, &start);
+    laconic_tree_outputs out = tree_outputs(&m, &s);
+    const double before = (double)out.motion.energy_J;
+    laconic_tree_input in = tree_nothing();
+    double energy = before;
+    for (int k = 0; k < 6000; k++) {
+        tree_run(&m, &s, &in, 0.001, 1);
+        const double now = (double)tree_outputs(&m, &s).motion.energy_J;
+        TEST_ASSERT_TRUE(now <= energy);
+        energy = now;
+    }
+    out = tree_outputs(&m, &s);
+    TEST_ASSERT_TRUE(fabs(tree_books_off(&out, before)) < EITHER(1e-10, 1e-2) * before);
+    TEST_ASSERT_TRUE(energy == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(ground_without_friction_is_refused);
@@ -199,5 +310,8 @@ int main(void) {
     RUN_TEST(a_trailer_rests_on_its_axle_and_the_hitch);
     RUN_TEST(a_hinge_that_carries_pitch_shares_loads);
     RUN_TEST(braking_shifts_the_load_and_a_wheel_that_would_pull_lifts);
+    RUN_TEST(without_hinges_it_is_the_friction_step_of_rigid_vehicles);
+    RUN_TEST(a_held_hinge_is_a_rigid_body);
+    RUN_TEST(a_chain_of_trailers_keeps_its_books_and_comes_to_rest);
     return UNITY_END();
 }

@@ -68,10 +68,12 @@ def test_the_two_files_compile_behind_every_platforms_macros(macros):
     compiled(macros, [built("amalgamation")], [built("amalgamation/laconic_single.c")])
 
 
-@pytest.mark.parametrize("part", ["articulated", "batch", "derivatives", "estimate", "filter", "soft_double"])
+@pytest.mark.parametrize("part", ["articulated", "articulated_friction", "batch", "derivatives", "estimate", "filter",
+                                  "soft_double"])
 def test_each_optional_part_of_the_core_does(part, macros):
     files = [path for path in sorted((CORE / "optional" / part).glob("*.c")) if path.name != "check_double.c"]
-    compiled(macros, [*FOLDERS, CORE / "optional" / "derivatives"], files)
+    optional = [CORE / "optional" / name for name in ("articulated", "derivatives")]
+    compiled(macros, [*FOLDERS, *optional], files)
 
 
 def test_the_node_its_drives_and_the_gate_do(macros):
