@@ -47,6 +47,7 @@ INLINE void tree_combine(tree_row *out, const tree_row rows[2], real first, real
 INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, const tree_law *law, bool star) {
     const int32_t depth = tree_depth(c->on, star);
     tree_row part[2];
+    part[0].along[0] = part[1].along[0] = R(0); /* else compilers doubt it */
     tree_subtract(rest, &c->row[0], law->impulse[0], c->on, star);
     tree_subtract(rest, &c->row[1], law->impulse[1], c->on, star);
     if (law->xy == R(0)) { /* most wheels that roll */
@@ -114,6 +115,7 @@ INLINE vector tree_solved_base(const tree_matrix *k, vector rest) {
 
 INLINE void tree_solve_equations(tree_matrix *k, tree_vector *x, const tree_model *m, bool star) {
     real inverse[TREE_HINGES];
+    inverse[0] = R(0);
     for (int32_t j = m->body_count - 1; j >= 0; j--) tree_take_out(k, x, inverse, &m->body[j + 1], j, star);
     x->base = tree_solved_base(k, x->base);
     for (int32_t j = 0; j < m->body_count; j++) {

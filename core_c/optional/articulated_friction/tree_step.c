@@ -25,6 +25,7 @@
 static void tree_find_posture(tree_part *p, const tree_state *s) {
     const tree_model *m = p->m;
     direction turned[TREE_HINGES];
+    turned[0] = direction_with(R(1), R(0));
     for (int32_t j = 0; j < m->body_count; j++) {
         const tree_body *link = &m->body[j + 1];
         const real turn = R(0.5) * p->h * s->z[3 + j];
@@ -380,8 +381,8 @@ static laconic_status tree_check_step(const tree_model *m, real step_s, const tr
 laconic_status laconic_tree_step(const laconic_tree_model *model, laconic_real step_s, laconic_tree_state *state,
                                  const laconic_tree_input *held, laconic_refusal *why) {
     laconic_status status = tree_check_step(model, step_s, state, held, why);
-    int32_t wait[TREE_HINGES];
-    real command[TREE_HINGES];
+    int32_t wait[TREE_HINGES] = {0};
+    real command[TREE_HINGES] = {R(0)};
     tree_part p;
     if (status != LACONIC_OK) return status;
     for (int32_t b = 0; model->controlled && b < model->body_count; b++) {
