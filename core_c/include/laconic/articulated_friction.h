@@ -21,6 +21,7 @@
  * Loads    by statics at each step, with the wheels where they are and the ground's forces of the step before. A hinge
  *          carries pitch and roll (a caster's fork, a swerve module), or as a hitch only a force (a trailer). A hitch's
  *          horizontal force counts as acting at the height of the trailer's centre of mass.
+ * Memory   a step needs some 27 kB of stack in double with the default bounds of real.h.
  * Order    1: halving the step halves the error. Rolling casters need h v/trail < 2.
  * Cost     of a step of 1 ms over that of a rigid vehicle with as many wheels: test_articulated_cost.py. */
 #ifndef LACONIC_ARTICULATED_FRICTION_H
@@ -64,6 +65,8 @@ typedef struct laconic_tree_wheel {
     laconic_real scrub_radius_m; /* a: a standing wheel resists turning about the vertical with μN a           */
     laconic_real scrub_fade_m;   /* ρ_s: a rolling one with μN a · min(1, ρ_s/radius of its path); 0: as standing.
                                     A rim slower than 1 µm/s counts as standing */
+    laconic_real creep; /* of a tyre: slip over rolled way at which its force reaches μN; below it force and slip
+                                    are in proportion, so that its cornering stiffness is μN/creep; 0: none     */
 } laconic_tree_wheel;
 
 /* Start from all zero. `hinged.base.ground.friction_coefficient` must be above 0; `hinged.base.drive` holds for the
@@ -95,7 +98,8 @@ typedef struct laconic_tree_vehicle {
 #define LACONIC_TREE_WHEEL_FIELDS(X, of) \
     X(of, 135, WHEEL_LOAD,            load_N,                 wheel_load_N,                REAL, NOT_NEGATIVE, NEVER) \
     X(of, 136, SCRUB_RADIUS,          scrub_radius_m,         scrub_radius_m,              REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 137, SCRUB_FADE,            scrub_fade_m,           scrub_fade_m,                REAL, NOT_NEGATIVE, NEVER)
+    X(of, 137, SCRUB_FADE,            scrub_fade_m,           scrub_fade_m,                REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 139,CREEP, creep, wheel_creep, REAL,NOT_NEGATIVE, NEVER)
 
 /* The array of laconic_tree_input that laconic_articulated_input has not; the step checks it. */
 #define LACONIC_TREE_INPUT_FIELDS(X, of) \
@@ -110,7 +114,7 @@ typedef struct laconic_tree_vehicle {
 
 /* Numbers of a refusal's field besides those of laconic_articulated_field. The item: number of the body or wheel. */
 typedef enum laconic_tree_field {
-    LACONIC_TREE_FIELDS(LACONIC_TREE_FIELD_NUMBER) LACONIC_TREE_FIELD_COUNT = 139
+    LACONIC_TREE_FIELDS(LACONIC_TREE_FIELD_NUMBER) LACONIC_TREE_FIELD_COUNT = 140
 } laconic_tree_field;
 
 /* ---------------------------------------------------------------------------------- model -- */
@@ -146,7 +150,8 @@ typedef struct laconic_tree_rim {
     laconic_real rim[2];               /* R sin γ, k R cos γ                                                 */
     laconic_real arm_across_m;         /* R cos γ                                                            */
     laconic_real rolling[2], rim_size; /* rim[] as direction and length                                      */
-    laconic_real radius_m, drag, inertia_kgm2, friction_coefficient, dry_Nm, load_N, scrub_radius_m, scrub_fade_m;
+    laconic_real radius_m, drag, inertia_kgm2, friction_coefficient, dry_Nm, load_N, scrub_radius_m, scrub_fade_m,
+        creep;
 } laconic_tree_rim;
 
 /* A motor on a wheel's axle, or behind them on a hinge. */

@@ -27,8 +27,8 @@ static void tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s
     const laconic_tree_motor *a = &p->m->motor[axis];
     if (!a->acts) return;
     const tree_motor_state motor = laconic_tree_motor_at(p->m, axis, p->command_V[axis], speed, p->terminal_V);
-    real fed = p->h * a->gain_Nm_per_V * motor.voltage_V * speed;
-    if (a->ampere_per_Nm != R(0)) fed = p->h * motor.voltage_V * motor.current_A;
+    const bool known = a->ampere_per_Nm != R(0); /* the electrical side */
+    const real fed = p->h * motor.voltage_V * (known ? motor.current_A : a->gain_Nm_per_V * speed);
     s->current_A[axis] = motor.current_A;
     s->limit[axis] = (int32_t)motor.limit;
     s->motor_torque_Nm[axis] = motor.torque_Nm - a->viscous_Nms * speed;

@@ -28,7 +28,7 @@ INLINE void tree_prepare_contact(tree_contact *c, bool star) {
     c->across = tree_row_product(&c->row[1], &c->row[1], c->on, star);
     c->row_mass[0] = tree_inverse_or_zero(c->along);
     c->row_mass[1] = tree_inverse_or_zero(c->across);
-    c->mobility = c->along + c->across + c->wheel->rim_size * c->wheel->rim_size / c->wheel->inertia_kgm2;
+    c->mobility = c->along + c->across + c->wheel->rim_size * c->wheel->rim_size / c->wheel->inertia_kgm2 + c->creep;
     c->inverse_mobility = R(1) / c->mobility;
     c->lateral_mass = c->row_mass[1];
     if (e[1] == R(0)) return;
@@ -93,7 +93,9 @@ INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_v
     real inside = R(1), off[2], size;
     for (int m = 0; m < 2; m++) {
         s->moved[m] = tree_dot(&c->row[m], c->on, nu, star);
-        off[m] = (s->moved[m] - rim[m] * c->speed) * c->inverse_mobility;
+        off[m] = s->moved[m] - rim[m] * c->speed;
+        if (c->creep > R(0)) off[m] -= c->creep * p[m];
+        off[m] *= c->inverse_mobility;
         s->t[m] = p[m] + off[m];
     }
     s->length = s->firm = R(0);
@@ -155,7 +157,7 @@ real laconic_tree_see(tree_search *at) { return at->p->m->star ? tree_see_everyt
 INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
     const real n[2] = {s->t[0] / s->length, s->t[1] / s->length}, *rims = c->wheel->rim, grip = c->load.grip;
     const real rim = n[0] * rims[1] - n[1] * rims[0], moved = n[0] * s->moved[1] - n[1] * s->moved[0];
-    const real beyond = (s->length - grip) * c->mobility, inertia = c->wheel->inertia_kgm2;
+    const real beyond = (s->length - grip) * c->mobility + grip * c->creep, inertia = c->wheel->inertia_kgm2;
     const real row = n[1] * n[1] * c->along - R(2) * n[0] * n[1] * c->cross_row + n[0] * n[0] * c->across;
     const real turns = row + rim * rim / inertia;
     const real most = turns > TREE_NO_SLIP * c->mobility ? penalty / turns : R(0);
@@ -208,9 +210,36 @@ INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_c
     law->yy = k * e[1] * e[1] + side * e[0] * e[0];
 }
 
+/* Below its limit a tyre that creeps has the slip creep · impulse, in both directions; the wheel turns as it may. */
+static void tree_creeps(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
+    const real *rim = c->wheel->rim, inertia = c->wheel->inertia_kgm2;
+    real stiff[2], held[2], pulled[2];
+    for (int m = 0; m < 2; m++) {
+        const real hard = penalty * c->row_mass[m], share = R(1) / (R(1) + hard * c->creep);
+        stiff[m] = hard * share;
+        held[m] = share * c->impulse[m] + stiff[m] * s->moved[m];
+        pulled[m] = stiff[m] * rim[m];
+    }
+    const real added = pulled[0] * rim[0] + pulled[1] * rim[1];
+    const turning wheel =
+        tree_turning(c, added, c->load.axle, inertia * c->load.free_speed + rim[0] * held[0] + rim[1] * held[1]);
+    const real all = wheel.held ? R(1) : wheel.slope + added, own = wheel.held ? R(1) : wheel.slope;
+    const real yields = wheel.held ? R(0) : R(1);
+    law->speed = wheel.speed;
+    for (int m = 0; m < 2; m++) {
+        law->impulse[m] = held[m] - pulled[m] * wheel.speed;
+        law->turn[m] = yields * pulled[m] / all;
+    }
+    law->xx = stiff[0] * (own + yields * pulled[1] * rim[1]) / all;
+    law->yy = stiff[1] * (own + yields * pulled[0] * rim[0]) / all;
+    law->xy = -yields * pulled[0] * pulled[1] / all;
+}
+
 static void tree_take_law(tree_law *law, const tree_sight *s, const tree_contact *c, real penalty) {
     if (s->length > R(0))
         tree_slips(law, s, c, penalty);
+    else if (c->creep > R(0))
+        tree_creeps(law, s, c, penalty);
     else if (s->locked)
         tree_stays_locked(law, s, c, penalty);
     else

@@ -54,6 +54,20 @@ RARE void tree_soften_contact(tree_soft *restrict s, real *fall, const tree_cont
     tree_fall_by(fall, off[0] * off[0] + off[1] * off[1], grip);
 }
 
+/* A compliance in series, whose slip is taken off before: impulse = (1 + creep H)⁻¹(impulse + creep H p), and H in the
+ * same way. */
+static void tree_soften_creep(tree_soft *restrict s, const tree_contact *c) {
+    const real a = c->creep, *p = c->impulse, area = s->xx * s->yy - s->xy * s->xy, det = area > R(0) ? area : R(0);
+    const real whole = R(1) + a * (s->xx + s->yy) + a * a * det;
+    const real x = s->impulse[0] + a * (s->xx * p[0] + s->xy * p[1]);
+    const real y = s->impulse[1] + a * (s->xy * p[0] + s->yy * p[1]);
+    s->impulse[0] = ((R(1) + a * s->yy) * x - a * s->xy * y) / whole;
+    s->impulse[1] = ((R(1) + a * s->xx) * y - a * s->xy * x) / whole;
+    s->xx = (s->xx + a * det) / whole;
+    s->yy = (s->yy + a * det) / whole;
+    s->xy = s->xy / whole;
+}
+
 RARE real tree_dry(real *growth, real *fall, real bound, real speed, real now, real tau) {
     const real size = tree_root_of(speed * speed + tau * tau), x = speed / size, impulse = bound * x;
     *growth = (bound - now * x) / size;
@@ -100,10 +114,11 @@ static void tree_soften_wheel(tree_law *law, tree_soft *restrict s, real *fall, 
                               const tree_path *path) {
     const tree_contact *c = &p->contact[i];
     const real *rim = c->wheel->rim, size = c->wheel->rim_size;
-    const real slip[2] = {tree_dot(&c->row[0], c->on, &p->nu, false) - rim[0] * c->speed,
-                          tree_dot(&c->row[1], c->on, &p->nu, false) - rim[1] * c->speed};
+    const real slip[2] = {tree_dot(&c->row[0], c->on, &p->nu, false) - rim[0] * c->speed - c->creep * c->impulse[0],
+                          tree_dot(&c->row[1], c->on, &p->nu, false) - rim[1] * c->speed - c->creep * c->impulse[1]};
     s->xx = s->xy = s->yy = s->impulse[0] = s->impulse[1] = s->axle = s->axle_growth = R(0);
     if (c->load.grip > R(0)) tree_soften_contact(s, fall, c, slip, path);
+    if (c->load.grip > R(0) && c->creep > R(0)) tree_soften_creep(s, c);
     if (c->load.axle > R(0))
         s->axle = tree_dry(&s->axle_growth, fall, c->load.axle, c->speed, path->axle[i],
                            tree_tau(path, c->load.axle, c->wheel->inertia_kgm2 + size * size));

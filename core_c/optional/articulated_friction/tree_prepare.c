@@ -109,6 +109,7 @@ static void tree_fill_wheel(laconic_tree_model *m, const laconic_tree_vehicle *v
     w->load_N = v->wheel[i].load_N;
     w->scrub_radius_m = v->wheel[i].scrub_radius_m;
     w->scrub_fade_m = v->wheel[i].scrub_fade_m;
+    w->creep = v->wheel[i].creep;
 }
 
 /* The part of `damping` that is not back-EMF is viscous; `per_ampere`: torque, 0 where R_a is not known. */
@@ -202,7 +203,7 @@ static bool tree_in_range(const laconic_tree_model *m) {
         const laconic_tree_rim *w = &m->wheel[i];
         sum += magnitude(w->x_m) + magnitude(w->y_m) + w->rim_size + w->inertia_kgm2 + R(1) / w->inertia_kgm2 +
                R(1) / w->rim_size + w->friction_coefficient + w->dry_Nm + w->load_N + w->scrub_radius_m +
-               w->scrub_fade_m;
+               w->scrub_fade_m + w->creep;
     }
     for (int32_t i = 0; i < m->wheel_count + m->body_count; i++)
         sum += magnitude(m->motor[i].gain_Nm_per_V) + m->motor[i].back_emf_Nms + m->motor[i].viscous_Nms +

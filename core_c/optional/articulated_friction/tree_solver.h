@@ -22,6 +22,7 @@ typedef struct tree_contact {
     tree_row row[2];               /* along; k across                                    */
     real along, cross_row, across; /* row[0]·row[0], row[0]·row[1], row[1]·row[1]        */
     real mobility, inverse_mobility, lateral_mass, row_mass[2];
+    real creep; /* slip per impulse of a tyre below its limit; mobility includes it */
     friction_load load;
     real speed, impulse[2]; /* found; on entry the guess of the impulse           */
 } tree_contact;

@@ -233,11 +233,16 @@ static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_stat
     l->drive = l->drive_slope = l->viscous = l->free_speed = R(0);
 }
 
-static void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
+RARE real tree_creep_of(const tree_contact *c, const tree_state *s, int32_t i) {
+    const real rim_speed = c->wheel->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
+    if (!(c->load.grip > R(0)) || rim_speed < TREE_STANDING_M_PER_S) return R(0);
+    return rim_speed * c->wheel->creep / c->load.grip;
+}
+
+RARE void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
     const laconic_tree_rim *w = &p->m->wheel[i];
     tree_row *row = &p->problem.scrub_row[i];
     const real bound = p->h * w->friction_coefficient * p->loads.carried_N[i] * w->scrub_radius_m;
-    p->scrub[i] = -1;
     if (!(bound > R(0))) return;
     p->scrub[i] = p->problem.element_count;
     tree_element *e = tree_new_element(p, w->body, row);
@@ -258,8 +263,10 @@ INLINE void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i, bool st
     c->on = &p->m->body[c->wheel->body];
     tree_fill_rows(c, p, &p->place[i], star);
     tree_load_wheel(c, p, s, i);
+    c->creep = c->wheel->creep > R(0) ? tree_creep_of(c, s, i) : R(0);
     for (int k = 0; k < 2; k++) c->impulse[k] = p->h * s->grip_N[i][k];
-    tree_add_scrub(p, s, i);
+    p->scrub[i] = -1;
+    if (c->wheel->scrub_radius_m > R(0)) tree_add_scrub(p, s, i);
 }
 
 /* --------------------------------------------------------------------------------------- the step -- */

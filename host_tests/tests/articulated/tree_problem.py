@@ -125,7 +125,7 @@ class Problem:
         h, n = self.h, self.n
         self.rows, self.rims = np.zeros((self.count, 2, n)), np.zeros((self.count, 2))
         self.inertia, self.viscous, self.wheel_push = (np.zeros(self.count) for _ in range(3))
-        self.grip, self.axle = np.zeros(self.count), np.zeros(self.count)
+        self.grip, self.axle, self.creep = np.zeros(self.count), np.zeros(self.count), np.zeros(self.count)
         for i, wheel in enumerate(self.wheels):
             body, k = wheel["body"], wheel["roller_drag"]
             angle = wheel["axle_rad"] + wheel["roller_rad"] + self.tree.angle[body]
@@ -140,6 +140,8 @@ class Problem:
                                   + h * wheel["motor_gain_Nm_per_V"] * segment.get("voltage_V", [0] * 99)[i])
             self.grip[i] = h * wheel["friction_coefficient"] * self.loads[i]
             self.axle[i] = h * wheel["axle_friction_Nm"]
+            rolled = wheel["radius_m"] * abs(before.wheel_speed[i])
+            self.creep[i] = rolled * wheel.get("creep", 0) / self.grip[i] if rolled >= 1e-6 else 0
             if wheel["scrub_radius_m"] > 0:
                 bound, fade = self.grip[i] * wheel["scrub_radius_m"], wheel["scrub_fade_m"]
                 row = np.concatenate([self.tree.turning(body), np.zeros(self.count)])
@@ -186,8 +188,8 @@ class Problem:
             slip = self.rows[i] @ after.z - self.rims[i] * s
             rest += p @ self.rows[i]
             mobility = sum(float(np.sum(whiten(row) ** 2)) for row in self.rows[i])
-            mobility += float(np.sum(self.rims[i] ** 2)) / self.inertia[i]
-            t = p + slip / mobility
+            mobility += float(np.sum(self.rims[i] ** 2)) / self.inertia[i] + self.creep[i]
+            t = p + (slip - self.creep[i] * p) / mobility
             size = np.hypot(*t)
             projected = t * min(1, self.grip[i] / size) if size > 0 else t
             worst = max(worst, float(np.hypot(*(p - projected))) * np.sqrt(mobility))
@@ -228,7 +230,8 @@ class Problem:
         total += float(np.sum(0.5 * (self.inertia + self.viscous) * s ** 2 - self.wheel_push * s))
         total += float(np.sum(self.axle * np.abs(s)))
         for i in range(self.count):
-            total += self.grip[i] * float(np.hypot(*(self.rows[i] @ z - self.rims[i] * s[i])))
+            slip, turn = float(np.hypot(*(self.rows[i] @ z - self.rims[i] * s[i]))), self.grip[i] * self.creep[i]
+            total += 0.5 * slip ** 2 / self.creep[i] if slip < turn else self.grip[i] * (slip - 0.5 * turn)
         for e in self.elements:
             if np.isinf(e.high) or np.isinf(e.low):
                 continue
@@ -273,7 +276,7 @@ class Problem:
             else:
                 dry.append((row, e.target, e.high))
         cones = [i for i in range(count) if self.grip[i] > 0]
-        size = n + count + len(dry) + 2 * len(soft) + len(cones)
+        size = n + count + len(dry) + 2 * len(soft) + len(cones) + 2 * sum(self.creep[i] > 0 for i in cones)
         quadratic, linear = np.zeros((size, size)), np.zeros(size)
         quadratic[:n + count, :n + count] = np.eye(n + count)
         linear[:n + count] = -free
@@ -320,7 +323,14 @@ class Problem:
             norm = np.linalg.norm(both)
             linear[start] = self.grip[i] * norm / scale
             say(wide(None, **{f"i{start}": -1}), 0)
-            for row in both:
+            if self.creep[i] > 0:  # ½/creep |slip − a|² + grip |a|; a in units of the rows
+                weight = norm * norm / self.creep[i]
+                for k, row in enumerate(both):
+                    d = wide(row / norm, **{f"i{start + 1 + k}": -1})
+                    quadratic += weight * np.outer(d, d)
+                    say(wide(None, **{f"i{start + 1 + k}": -1}), 0)
+                start += 2
+            for row in both if self.creep[i] == 0 else []:
                 say(wide(-row / norm), 0)
             start += 1
         kinds = []

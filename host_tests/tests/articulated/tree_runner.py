@@ -45,7 +45,7 @@ def vehicle_words(vehicle: Case) -> list[object]:
                   wheel["radius_m"], wheel["inertia_kgm2"], wheel["motor_gain_Nm_per_V"],
                   wheel["motor_damping_Nms"], int(wheel.get("locked", False)), wheel["friction_coefficient"],
                   wheel["roller_drag"], wheel["axle_friction_Nm"], wheel.get("circuit", 0),
-                  wheel.get("normal_load_N", 0), wheel["scrub_radius_m"], wheel["scrub_fade_m"]]
+                  wheel.get("normal_load_N", 0), wheel["scrub_radius_m"], wheel["scrub_fade_m"], wheel.get("creep", 0)]
     supports = vehicle.get("supports", [])
     return [*words, len(supports), *(number for point in supports for number in point)]
 
@@ -124,6 +124,8 @@ def random_wheel(rng: np.random.Generator, body: int, at: list[float], load_N: f
                    "scrub_radius_m": rng.choice([0, 0.01]), "scrub_fade_m": 0.0, **FIXED}
     if wheel["scrub_radius_m"] > 0:
         wheel["scrub_fade_m"] = rng.choice([0, 0.1])
+    if rng.random() < 0.2:
+        wheel["creep"] = rng.choice([0.02, 0.1])
     if rng.random() < 0.25:
         wheel |= {"roller_rad": rng.choice([np.pi / 4, -np.pi / 4, np.pi / 2]), "roller_drag": rng.uniform(0.05, 0.9)}
     return wheel

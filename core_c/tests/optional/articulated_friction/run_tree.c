@@ -5,7 +5,7 @@
  *            H {parent kind hinge_x hinge_y mass com_x com_y inertia damping stiffness rest gain com_z hitch dry
  *            stop_low stop_high servo_gain servo_damping servo_limit viscous resistance current_limit loop_V loop_Vs
  *            period}  N {body kind x y axle roller radius inertia gain damping locked friction drag axle_friction
- *            circuit load scrub_radius scrub_fade}  S {x y}
+ *            circuit load scrub_radius scrub_fade creep}  S {x y}
  *   start    vx vy yaw_rate x y heading  H angles  H rates  N wheel speeds
  *   input    N voltages, N torques, 3 body wrench, 2 world force, 2 point, H voltages, H torques, H rates, H angles
  *   run      step steps            as often as said
@@ -84,8 +84,8 @@ static void read_wheel(int i) {
     laconic_real *second[] = {&wheel->own_friction_coefficient, &wheel->own_roller_drag, &wheel->own_axle_friction_Nm};
     read_numbers(second, 3);
     wheel->motor_circuit = (int32_t)number();
-    laconic_real *third[] = {&more->load_N, &more->scrub_radius_m, &more->scrub_fade_m};
-    read_numbers(third, 3);
+    laconic_real *third[] = {&more->load_N, &more->scrub_radius_m, &more->scrub_fade_m, &more->creep};
+    read_numbers(third, 4);
 }
 
 static void read_vehicle(void) {

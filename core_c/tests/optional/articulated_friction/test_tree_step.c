@@ -201,6 +201,27 @@ static void scrub_resists_turning_and_fades_when_the_wheel_rolls(void) {
     ASSERT_NEAR(0.02, bound * 0.05 * turning / speed, -(double)tree_outputs(&m, &s).scrub_Nm[0]);
 }
 
+/* Tyres under a side force run askew: by creep · force/(μ N) of the way; without creep they hold. */
+static void a_tyre_that_creeps_has_a_cornering_stiffness(void) {
+    for (int creeps = 0; creeps < 2; creeps++) {
+        laconic_tree_vehicle v = tree_rigid();
+        for (int i = 0; i < 4; i++) {
+            v.wheel[i].creep = REAL(creeps ? 0.05 : 0);
+            v.hinged.base.wheel[i].own_motor_gain_Nm_per_V = v.hinged.base.wheel[i].own_motor_damping_Nms = 0;
+        }
+        const laconic_tree_model m = tree_model(v);
+        const laconic_tree_start start = tree_start_at(2, 0, 0);
+        laconic_tree_state s = tree_state(&m, &start);
+        laconic_tree_input in = tree_nothing();
+        in.hinged.base.body_force_N[1] = 60;
+        tree_run(&m, &s, &in, 0.001, 500);
+        const laconic_tree_outputs out = tree_outputs(&m, &s);
+        const double share = 60 / (0.8 * 36 * 9.80665), askew = (double)(s.z[1] / s.z[0]);
+        ASSERT_NEAR(creeps ? 2e-4 : EITHER(1e-9, 1e-4), creeps ? 0.05 * share : 0, askew);
+        TEST_ASSERT_EQUAL(0, out.contact_state[0]);
+    }
+}
+
 /* ----------------------------------------------------------------------------- rest, bits, refusals -- */
 
 static void rest_stays_rest_to_the_last_bit(void) {
@@ -324,6 +345,7 @@ int main(void) {
     RUN_TEST(a_hinge_motor_without_loop_follows_its_voltage);
     RUN_TEST(the_books_close_with_motors_slope_springs_and_scrub);
     RUN_TEST(scrub_resists_turning_and_fades_when_the_wheel_rolls);
+    RUN_TEST(a_tyre_that_creeps_has_a_cornering_stiffness);
     RUN_TEST(rest_stays_rest_to_the_last_bit);
     RUN_TEST(a_caster_robot_that_reverses_flips_its_casters);
     RUN_TEST(a_trailer_jackknifes_where_the_cars_rear_wheels_lock);
