@@ -27,7 +27,8 @@ function(laconic_purity real)
         list(APPEND objects $<TARGET_FILE:laconic_core_${real}_v3>)
     endif()
     file(GLOB_RECURSE all_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/*.[ch]"
-        "${CMAKE_CURRENT_SOURCE_DIR}/optional/articulated/*.[ch]")
+        "${CMAKE_CURRENT_SOURCE_DIR}/optional/articulated/*.[ch]"
+        "${CMAKE_CURRENT_SOURCE_DIR}/optional/articulated_friction/*.[ch]")
     set(check "${laconic_SOURCE_DIR}/cmake/check_purity.py")
     set(stamp "${CMAKE_CURRENT_BINARY_DIR}/pure_${real}.stamp")
     add_custom_command(

@@ -3,6 +3,7 @@
 #include "laconic/laconic.h"
 
 #include "laconic/articulated.h"
+#include "laconic/articulated_friction.h"
 #include "laconic/batch.h"
 #include "laconic/derivatives.h"
 #include "laconic/estimate.h"

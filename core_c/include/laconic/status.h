@@ -108,7 +108,16 @@
       "this wheel and wheel # ask for different turning centres, so that nothing moves; use coordinated hinges, or " \
       "give ground.friction_coefficient, so that wheels slip") \
     X(STEP_BEYOND_TRAIL_LIMIT, "step beyond trail limit", /* explicit methods: h·v/a above their limit */ \
-      "# s is unstable with this method because a caster follows too fast (speed over trail); use at most @ s, or auto")
+      "# s is unstable with this method because a caster follows too fast (speed over trail); use at most @ s, or " \
+      "auto") \
+    X(BELOW_LIMIT, "below limit", \
+      "# is below @; give @ or more") \
+    X(COORDINATED_SLIPS, "coordinated slips", /* a coordinated hinge on ground with friction */ \
+      "a twist coordinates hinges on ideal ground alone; on ground with friction use 1 (free) with a servo, " \
+      "2 (motor) or 3 (prescribed)") \
+    X(NO_EFFECT_ON_HINGE, "no effect on hinge", \
+      "# has no effect on a hinge of this kind; take it out, or change the hinge: a servo needs 1 (free), a loop and " \
+      "a current limit 2 (motor), stops either, a period a servo or loop")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \

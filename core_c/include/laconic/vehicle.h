@@ -341,7 +341,7 @@ typedef enum laconic_field_need {
 typedef enum laconic_field {
     LACONIC_FIELD_NONE = 0,
     LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 63, /* one more than the largest number above */
-    LACONIC_FIELD_LAST = 127 /* no field: in C++ an enumeration holds no number that has more bits than its largest */
+    LACONIC_FIELD_LAST = 255 /* no field: in C++ an enumeration holds no number that has more bits than its largest */
 } laconic_field;
 
 #endif

@@ -67,10 +67,7 @@ static laconic_status check_ground(const laconic_vehicle *base, laconic_refusal 
     return LACONIC_OK;
 }
 
-laconic_status laconic_articulated_check(const laconic_articulated_vehicle *vehicle, laconic_refusal *why) {
-    laconic_status status = laconic_vehicle_check(&vehicle->base, why);
-    if (status == LACONIC_OK) status = check_ground(&vehicle->base, why);
-    if (status != LACONIC_OK) return status;
+laconic_status laconic_articulated_check_bodies(const laconic_articulated_vehicle *vehicle, laconic_refusal *why) {
     if (vehicle->body_count < 0 || vehicle->body_count > LACONIC_MAX_BODIES)
         return refuse(why, LACONIC_TOO_MANY_BODIES, OF(BODY_COUNT), 0, (real)vehicle->body_count,
                       R(LACONIC_MAX_BODIES));
@@ -79,10 +76,16 @@ laconic_status laconic_articulated_check(const laconic_articulated_vehicle *vehi
             return refuse(why, LACONIC_BODY_UNKNOWN, OF(WHEEL_BODY), i + 1, (real)vehicle->wheel_body[i],
                           (real)vehicle->body_count);
     for (int32_t b = 1; b <= vehicle->body_count; b++) {
-        status = check_hung_body(&vehicle->body[b - 1], b, why);
+        const laconic_status status = check_hung_body(&vehicle->body[b - 1], b, why);
         if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;
+}
+
+laconic_status laconic_articulated_check(const laconic_articulated_vehicle *vehicle, laconic_refusal *why) {
+    laconic_status status = laconic_vehicle_check(&vehicle->base, why);
+    if (status == LACONIC_OK) status = check_ground(&vehicle->base, why);
+    return status == LACONIC_OK ? laconic_articulated_check_bodies(vehicle, why) : status;
 }
 
 #endif

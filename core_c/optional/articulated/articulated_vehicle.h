@@ -10,6 +10,9 @@
 /* Every number of bodies and wheels by itself. */
 laconic_status laconic_articulated_check(const laconic_articulated_vehicle *vehicle, laconic_refusal *why);
 
+/* The part that does not depend on the ground: numbers, parents and hinges of bodies, bodies of wheels. */
+laconic_status laconic_articulated_check_bodies(const laconic_articulated_vehicle *vehicle, laconic_refusal *why);
+
 /* Fills the model's wheels in the frames of their bodies; `com`: of body 0 with its payload. */
 void laconic_articulated_wheels(laconic_articulated_model *m, const laconic_articulated_vehicle *vehicle);
 

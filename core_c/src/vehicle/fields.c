@@ -1,9 +1,13 @@
-/* The texts and traits that the lists of vehicle.h, sensors.h and articulated.h give each field: its name in FMUs, its
- * key in a scene, its traits. */
+/* The texts and traits that the lists of vehicle.h, sensors.h, articulated.h and articulated_friction.h give each
+ * field: its name in FMUs, its key in a scene, its traits. */
 #include "common.h"
-#include "laconic/articulated.h"
+#include "laconic/articulated_friction.h"
 
-#if LACONIC_MAX_BODIES > 0
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+#define EVERY_FIELD(X) \
+    LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X) LACONIC_ARTICULATED_FIELDS(X) LACONIC_TREE_FIELDS(X)
+#define TABLE_LENGTH LACONIC_TREE_FIELD_COUNT
+#elif LACONIC_MAX_BODIES > 0
 #define EVERY_FIELD(X) LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X) LACONIC_ARTICULATED_FIELDS(X)
 #define TABLE_LENGTH LACONIC_ARTICULATED_FIELD_COUNT
 #else
@@ -61,6 +65,9 @@ const char *laconic_field_name(laconic_field field) { return text_or_empty(name_
 #define PATH_BODY(member) "vehicle.body[#]." #member
 #define PATH_HINGE(member) #member "[#]"
 #define PATH_HINGE_START(member) "initial." #member "[#]"
+#define PATH_TREE_HINGE(member) PATH_BODY(member)
+#define PATH_TREE_WHEEL(member) PATH_WHEEL(member)
+#define PATH_TREE_INPUT(member) PATH_HINGE(member)
 #define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(row_text, number, PATH_##of(member))
 
 static const row_text *path_row(laconic_field field) { RETURN_ROW(row_text, field, EVERY_FIELD(PATH)) }
@@ -88,6 +95,9 @@ const char *laconic_field_path(laconic_field field) { return text_or_empty(path_
 #define ITEMS_BODY(member) LACONIC_MAX_BODIES
 #define ITEMS_HINGE(member) sizeof(((laconic_articulated_input *)NULL)->member) / sizeof(real)
 #define ITEMS_HINGE_START(member) sizeof(((laconic_articulated_start *)NULL)->member) / sizeof(real)
+#define ITEMS_TREE_HINGE(member) LACONIC_MAX_BODIES
+#define ITEMS_TREE_WHEEL(member) LACONIC_MAX_WHEELS
+#define ITEMS_TREE_INPUT(member) sizeof(((laconic_tree_input *)NULL)->member) / sizeof(real)
 #define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF(number)(ROW(laconic_field_traits, number, \
                                {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}))

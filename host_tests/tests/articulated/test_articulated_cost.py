@@ -1,4 +1,7 @@
-"""What a step of a vehicle with hinges costs, in steps of rk4 of a vehicle without them and with as many wheels."""
+"""What a step of a vehicle with hinges costs, in steps of a vehicle without them and with as many wheels.
+
+On ideal ground these are steps of rk4, on ground with friction those of its own step.
+"""
 
 from __future__ import annotations
 
@@ -29,3 +32,25 @@ def test_a_step_of_rk4_costs_at_most_so_many_plain_steps(capsys: pytest.CaptureF
     with capsys.disabled():
         print(f"\n{vehicle}: {step:.0f} instructions, {step / plain:.2f} plain steps of {plain:.0f}")
     assert step / plain < limit
+
+
+# ------------------------------------------------------------------------------- on ground with friction
+
+FRICTION_LIMITS = {"rigid": 1.5, "casters": 1.8, "loader": 1.8, "ackermann": 2.4, "swerve": 3.0}
+
+
+@cache
+def friction_step_cost(vehicle: str) -> float:
+    program = str(built("bin/count_tree"))
+    least, most = (instructions_of([program, vehicle, str(steps)]) for steps in (1000, 3000))
+    return (most - least) / 2000
+
+
+@pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
+@pytest.mark.parametrize("vehicle", FRICTION_LIMITS)
+def test_a_step_on_ground_with_friction_costs_at_most_so_many_rigid_ones(capsys: pytest.CaptureFixture[str],
+                                                                         vehicle: str) -> None:
+    plain, step = friction_step_cost("plain"), friction_step_cost(vehicle)
+    with capsys.disabled():
+        print(f"\n{vehicle}: {step:.0f} instructions, {step / plain:.2f} rigid friction steps of {plain:.0f}")
+    assert step / plain < FRICTION_LIMITS[vehicle]

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 HEADERS = ("laconic.h", "vehicle.h", "friction.h", "sensors.h", "batch.h", "derivatives.h", "filter.h", "estimate.h",
-           "articulated.h", "status.h", "real.h")
+           "articulated.h", "articulated_friction.h", "status.h", "real.h")
 SECTION = re.compile(r"/\* -{8,} (.+?) -+ \*/")
 COMMENT = re.compile(r"/\*(.*?)\*/", re.DOTALL)
 

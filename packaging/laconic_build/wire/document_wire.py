@@ -57,6 +57,8 @@ STATUSES = {
     "TWIST_AGAINST_WHEELS": "the twist makes fixed wheels slide",
     "WHEELS_DISAGREE": "wheels ask for different turning centres",
     "STEP_BEYOND_TRAIL_LIMIT": "a caster is too fast for an explicit step",
+    "BELOW_LIMIT": "below the smallest value", "COORDINATED_SLIPS": "coordinated hinges need ideal ground",
+    "NO_EFFECT_ON_HINGE": "a number does nothing on a hinge of this kind",
     "UNKNOWN_COMMAND": "no such CONTROL.command", "WRONG_STATE": "not in this state",
     "CHECKSUM_MISMATCH": "COMMIT: frames were lost or another number was sent",
     "INPUT_INCOMPLETE": "raw inputs or half a double are missing", "PARAMETER_UNKNOWN": "no such field or item",

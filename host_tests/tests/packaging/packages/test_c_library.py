@@ -281,10 +281,12 @@ def test_the_two_files_compile_behind_every_platforms_macros(macros):
 
 
 @needs_macro_names
-@pytest.mark.parametrize("part", ["articulated", "batch", "derivatives", "estimate", "filter", "soft_double"])
+@pytest.mark.parametrize("part", ["articulated", "articulated_friction", "batch", "derivatives", "estimate", "filter",
+                                  "soft_double"])
 def test_each_optional_part_of_the_core_does(part, macros):
     files = [path for path in sorted((CORE / "optional" / part).glob("*.c")) if path.name != "check_double.c"]
-    compiled(macros, [*FOLDERS, CORE / "optional" / "derivatives"], files)
+    optional = [CORE / "optional" / name for name in ("articulated", "derivatives")]
+    compiled(macros, [*FOLDERS, *optional], files)
 
 
 @needs_macro_names

@@ -1,0 +1,261 @@
+/* The tree at one moment: places of hinges and centres of mass, momenta, the mass matrix and its factor.
+ *
+ * All is in axes of body 0, from S_0. A point r of body b moves with v_0 + θ' e_z×r + Σ ψ'_j e_z×(r − h_j) over the
+ * hinges j from body 0 to b. Mass, first moment and inertia are gathered from leaf to root about each hinge, so that a
+ * light body far out keeps its digits. The mass matrix has an entry only where one hinge hangs on the other; eliminated
+ * from leaf to root, M = LᵀL has no others. In ζ = Lz the energy is ½|ζ|², and a row becomes L⁻ᵀrow. */
+#ifndef LACONIC_TREE_POSTURE_H
+#define LACONIC_TREE_POSTURE_H
+
+#include "heading.h"
+#include "laconic/articulated_friction.h"
+#include "vector.h"
+
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+
+#define TREE_HINGES LACONIC_MAX_BODIES
+#define TREE_BODIES (LACONIC_MAX_BODIES + 1)
+
+typedef laconic_tree_model tree_model;
+typedef laconic_tree_body tree_body;
+
+/* Along a path: what belongs to the carriage's three speeds, then one number for each hinge of the path. */
+typedef struct tree_row {
+    vector base;
+    real along[TREE_HINGES];
+} tree_row;
+
+/* One number for each speed of the tree. */
+typedef struct tree_vector {
+    vector base;
+    real hinge[TREE_HINGES];
+} tree_vector;
+
+/* Symmetric; node j has the row of hinge j up to its own diagonal. */
+typedef struct tree_matrix {
+    tree_row node[TREE_HINGES];
+    real xx, xy, xz, yy, yz, zz;
+} tree_matrix;
+
+typedef struct tree_posture {
+    direction axes[TREE_BODIES];
+    real hinge_x[TREE_BODIES], hinge_y[TREE_BODIES], com_x[TREE_BODIES], com_y[TREE_BODIES];
+} tree_posture;
+
+/* L with inverse diagonals. */
+typedef struct tree_factor {
+    tree_matrix l;
+    real inverse[TREE_HINGES], ix, iy, iz;
+} tree_factor;
+
+/* ------------------------------------------------------------------------------- rows on paths -- */
+
+/* Hinges on the path of a body. `star`: all hinges are on body 0, as of most vehicles; given as a constant, it turns
+ * loops along paths into one step at most. */
+INLINE int32_t tree_depth(const tree_body *on, bool star) { return star ? (int32_t)(on->depth > 0) : on->depth; }
+
+INLINE real tree_dot(const tree_row *row, const tree_body *on, const tree_vector *x, bool star) {
+    real sum = dot(row->base, x->base);
+    for (int32_t k = 0; k < tree_depth(on, star); k++) sum += row->along[k] * x->hinge[on->path[k]];
+    return sum;
+}
+
+INLINE real tree_row_product(const tree_row *a, const tree_row *b, const tree_body *on, bool star) {
+    real sum = dot(a->base, b->base);
+    for (int32_t k = 0; k < tree_depth(on, star); k++) sum += a->along[k] * b->along[k];
+    return sum;
+}
+
+INLINE void tree_subtract(tree_vector *from, const tree_row *row, real times_row, const tree_body *on, bool star) {
+    from->base = minus(from->base, scaled(times_row, row->base));
+    for (int32_t k = 0; k < tree_depth(on, star); k++) from->hinge[on->path[k]] -= times_row * row->along[k];
+}
+
+static inline void tree_add(tree_vector *to, const tree_vector *x, int32_t hinges) {
+    to->base = plus(to->base, x->base);
+    for (int32_t k = 0; k < hinges; k++) to->hinge[k] += x->hinge[k];
+}
+
+static inline real tree_square(const tree_vector *x, int32_t hinges) {
+    real sum = square(x->base);
+    for (int32_t k = 0; k < hinges; k++) sum += x->hinge[k] * x->hinge[k];
+    return sum;
+}
+
+/* --------------------------------------------------------------------------------- the posture -- */
+
+static inline direction tree_turned(direction a, direction by) {
+    return direction_with(a.cosine * by.cosine - a.sine * by.sine, a.sine * by.cosine + a.cosine * by.sine);
+}
+
+/* Places all bodies; `turned`: each hinge's angle. */
+static inline void tree_place(tree_posture *p, const tree_model *m, const direction turned[]) {
+    p->axes[0] = direction_with(R(1), R(0));
+    p->hinge_x[0] = p->hinge_y[0] = p->com_x[0] = p->com_y[0] = R(0);
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        const tree_body *link = &m->body[b];
+        const int32_t on = link->parent;
+        direction d = turned[b - 1];
+        p->hinge_x[b] = link->hinge_x_m;
+        p->hinge_y[b] = link->hinge_y_m;
+        if (on > 0) {
+            const direction a = p->axes[on];
+            p->hinge_x[b] = p->hinge_x[on] + (a.cosine * link->hinge_x_m - a.sine * link->hinge_y_m);
+            p->hinge_y[b] = p->hinge_y[on] + (a.sine * link->hinge_x_m + a.cosine * link->hinge_y_m);
+            d = tree_turned(a, d);
+        }
+        p->axes[b] = d;
+        p->com_x[b] = p->hinge_x[b] + (d.cosine * link->com_x_m - d.sine * link->com_y_m);
+        p->com_y[b] = p->hinge_y[b] + (d.sine * link->com_x_m + d.cosine * link->com_y_m);
+    }
+}
+
+/* Velocities of all centres of mass and yaw rates at z. */
+static inline void tree_velocities(vector velocity[], const tree_posture *p, const tree_model *m, const real z[]) {
+    real x[TREE_BODIES], y[TREE_BODIES];
+    velocity[0] = vector_of(z[0], z[1], z[2]);
+    x[0] = z[0];
+    y[0] = z[1];
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        const int32_t on = m->body[b].parent;
+        const real before = velocity[on].z, rate = before + z[2 + b];
+        x[b] = x[on] - before * (p->hinge_y[b] - p->hinge_y[on]);
+        y[b] = y[on] + before * (p->hinge_x[b] - p->hinge_x[on]);
+        velocity[b] =
+            vector_of(x[b] - rate * (p->com_y[b] - p->hinge_y[b]), y[b] + rate * (p->com_x[b] - p->hinge_x[b]), rate);
+    }
+}
+
+/* Jᵀ of a wrench on each body (force, moment about its centre of mass): leaf to root, about each hinge. */
+static inline void tree_gather(tree_vector *out, const tree_posture *p, const tree_model *m, const vector wrench[]) {
+    vector sum[TREE_BODIES]; /* about the body's hinge */
+    sum[0] = wrench[0];
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        const real dx = p->com_x[b] - p->hinge_x[b], dy = p->com_y[b] - p->hinge_y[b];
+        sum[b] = wrench[b];
+        sum[b].z += dx * wrench[b].y - dy * wrench[b].x;
+    }
+    for (int32_t b = m->body_count; b >= 1; b--) {
+        const int32_t on = m->body[b].parent;
+        const real dx = p->hinge_x[b] - p->hinge_x[on], dy = p->hinge_y[b] - p->hinge_y[on];
+        out->hinge[b - 1] = sum[b].z;
+        sum[on] = plus(sum[on], vector_of(sum[b].x, sum[b].y, sum[b].z + (dx * sum[b].y - dy * sum[b].x)));
+    }
+    out->base = sum[0];
+}
+
+/* ------------------------------------------------------------------------------ the mass matrix -- */
+
+/* Mass, first moment and inertia of a body and all that hangs on it, about its hinge. */
+typedef struct tree_moments {
+    real mass, x, y, inertia;
+} tree_moments;
+
+static inline void tree_node_of(tree_row *node, const tree_posture *p, const tree_body *link, int32_t b,
+                                const tree_moments *c) {
+    node->base = vector_of(-c->y, c->x, c->inertia + (p->hinge_x[b] * c->x + p->hinge_y[b] * c->y));
+    for (int32_t k = 0; k < link->depth - 1; k++) {
+        const int32_t on = link->path[k] + 1;
+        const real dx = p->hinge_x[b] - p->hinge_x[on], dy = p->hinge_y[b] - p->hinge_y[on];
+        node->along[k] = c->inertia + (dx * c->x + dy * c->y);
+    }
+    node->along[link->depth - 1] = c->inertia + link->padding_kgm2;
+}
+
+static inline void tree_mass(tree_matrix *out, const tree_posture *p, const tree_model *m) {
+    tree_moments c[TREE_BODIES];
+    for (int32_t b = 0; b <= m->body_count; b++) {
+        const tree_body *link = &m->body[b];
+        const real x = p->com_x[b] - p->hinge_x[b], y = p->com_y[b] - p->hinge_y[b];
+        c[b].mass = link->mass_kg;
+        c[b].x = link->mass_kg * x;
+        c[b].y = link->mass_kg * y;
+        c[b].inertia = link->yaw_inertia_kgm2 + (c[b].x * x + c[b].y * y);
+    }
+    for (int32_t b = m->body_count; b >= 1; b--) {
+        const int32_t on = m->body[b].parent;
+        const real dx = p->hinge_x[b] - p->hinge_x[on], dy = p->hinge_y[b] - p->hinge_y[on];
+        tree_node_of(&out->node[b - 1], p, &m->body[b], b, &c[b]);
+        c[on].inertia += c[b].inertia + R(2) * (dx * c[b].x + dy * c[b].y) + c[b].mass * (dx * dx + dy * dy);
+        c[on].x += c[b].x + c[b].mass * dx;
+        c[on].y += c[b].y + c[b].mass * dy;
+        c[on].mass += c[b].mass;
+    }
+    out->xx = out->yy = c[0].mass;
+    out->xy = R(0);
+    out->xz = -c[0].y;
+    out->yz = c[0].x;
+    out->zz = c[0].inertia;
+}
+
+/* ------------------------------------------------------------------------------------- M = LᵀL -- */
+
+void laconic_tree_factor(tree_factor *f, const tree_model *m);
+
+static inline vector tree_back_base(const tree_factor *f, vector v) {
+    v.z *= f->iz;
+    v.x -= f->l.xz * v.z;
+    v.y = (v.y - f->l.yz * v.z) * f->iy;
+    v.x = (v.x - f->l.xy * v.y) * f->ix;
+    return v;
+}
+
+/* row := L⁻ᵀ row */
+INLINE void tree_back_row(tree_row *row, const tree_factor *f, const tree_body *on, bool star) {
+    for (int32_t above = 0, k; above < tree_depth(on, star); above++) {
+        k = tree_depth(on, star) - 1 - above;
+        const int32_t j = on->path[k];
+        const tree_row *node = &f->l.node[j];
+        const real share = row->along[k] * f->inverse[j];
+        row->along[k] = share;
+        row->base = minus(row->base, scaled(share, node->base));
+        for (int32_t i = 0; i < k && !star; i++) row->along[i] -= share * node->along[i];
+    }
+    row->base = tree_back_base(f, row->base);
+}
+
+static inline void tree_back_vector(tree_vector *x, const tree_factor *f, const tree_model *m) {
+    for (int32_t j = m->body_count - 1; j >= 0; j--) {
+        const tree_body *link = &m->body[j + 1];
+        const tree_row *node = &f->l.node[j];
+        const real share = x->hinge[j] * f->inverse[j];
+        x->hinge[j] = share;
+        x->base = minus(x->base, scaled(share, node->base));
+        for (int32_t i = 0; i < link->depth - 1; i++) x->hinge[link->path[i]] -= share * node->along[i];
+    }
+    x->base = tree_back_base(f, x->base);
+}
+
+/* z = L⁻¹ ζ */
+static inline void tree_forward(real z[], const tree_vector *zeta, const tree_factor *f, const tree_model *m) {
+    z[0] = zeta->base.x * f->ix;
+    z[1] = (zeta->base.y - f->l.xy * z[0]) * f->iy;
+    z[2] = (zeta->base.z - f->l.xz * z[0] - f->l.yz * z[1]) * f->iz;
+    for (int32_t j = 0; j < m->body_count; j++) {
+        const tree_body *link = &m->body[j + 1];
+        const tree_row *node = &f->l.node[j];
+        real rest = zeta->hinge[j] - dot(node->base, vec(z));
+        for (int32_t i = 0; i < link->depth - 1; i++) rest -= node->along[i] * z[3 + link->path[i]];
+        z[3 + j] = rest * f->inverse[j];
+    }
+}
+
+/* ---------------------------------------------------------------------------- parts of preparing -- */
+
+static inline bool tree_has_servo(const laconic_tree_hinge *hinge) {
+    return hinge->servo_gain_Nm_per_rad > R(0) || hinge->servo_damping_Nms > R(0);
+}
+
+static inline bool tree_has_loop(const laconic_tree_hinge *hinge) {
+    return hinge->loop_V_per_rad != R(0) || hinge->loop_Vs_per_rad != R(0);
+}
+
+static inline bool tree_has_stops(const laconic_tree_hinge *hinge) {
+    return hinge->stop_low_rad != R(0) || hinge->stop_high_rad != R(0);
+}
+
+/* Every number by itself, and what hinges and wheels need of each other. */
+laconic_status laconic_tree_check(const laconic_tree_vehicle *vehicle, laconic_refusal *why);
+
+#endif
+#endif

@@ -1,0 +1,284 @@
+/* One step of a tree on ground with friction: the semismooth Newton method of friction_solver.c, with rows along the
+ * paths of the tree and with scalar elements. There the passes, the residual and the constants are derived. */
+#include "tree_solver.h"
+
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+
+#ifdef LACONIC_SINGLE
+#define TREE_TOLERANCE R(1e-5)
+#define TREE_RESOLVED R(4e-5)
+#define TREE_ROUNDED R(3e-7)
+#define TREE_CLOSE R(9)
+#define TREE_SNAP R(1e-4)
+#define TREE_MOST_STRESS R(1e4)
+#else
+#define TREE_TOLERANCE R(1e-12)
+#define TREE_RESOLVED R(3e-11)
+#define TREE_ROUNDED R(6e-16)
+#define TREE_CLOSE R(900)
+#define TREE_SNAP R(1e-10)
+#define TREE_MOST_STRESS R(1e8)
+#endif
+#define TREE_SMALLEST_ENERGY (LACONIC_REAL_MIN / (TREE_TOLERANCE * TREE_TOLERANCE))
+#define TREE_EXACT_PASSES 6
+#define TREE_FIRST_AHEAD 5
+#define TREE_AHEAD 3
+#define TREE_TRIED 3
+#define TREE_WORTH_IT R(0.1)
+#define TREE_NEARLY R(4) /* where rounding leaves no more to find: twice the tolerance, squared */
+#define TREE_MOST_STRESSES 3
+#define TREE_SAME R(0.01)     /* of a change, squared */
+#define TREE_FARTHEST R(1e12) /* of the change in one pass */
+#define TREE_ALMOST (R(1e2) * TREE_TOLERANCE)
+
+/* --------------------------------------------------------------------------------------- the search -- */
+
+/* Twice the energy of the motion without contacts and elements but with what drives them; NaN where a limit is. */
+static real tree_free_energy(const tree_problem *p) {
+    real energy = tree_square(&p->free, p->m->body_count);
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        const friction_load *l = &p->contact[i].load;
+        const real inertia = p->contact[i].wheel->inertia_kgm2, push = inertia * l->free_speed + drive_at(l, R(0));
+        const real slope = magnitude(l->drive) < l->drive_limit ? l->drive_slope : R(0);
+        energy += push * push / (inertia + l->viscous + slope);
+        energy += zero_if_finite(l->viscous) + zero_if_finite(l->drive_slope);
+        energy += zero_if_finite(l->grip) + zero_if_finite(l->axle) + zero_if_finite(l->drive_limit);
+    }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const tree_element *e = &p->element[i];
+        energy += zero_if_finite(e->target) + zero_if_finite(e->compliance) + zero_if_finite(e->mobility);
+        if (e->compliance > R(0) && e->high < LACONIC_REAL_MAX) {
+            const real q = cut(e->target / e->compliance, e->high);
+            energy += q * q * e->mobility / (R(1) + e->mobility / e->compliance);
+        } else if (tree_unbounded(e)) {
+            energy += e->target * e->target / e->mobility;
+        }
+    }
+    return energy;
+}
+
+/* Contacts and elements that hold each other with many times the free motion would drown the speeds in rounding. */
+static void tree_forget_stress(tree_problem *p) {
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        real *q = p->contact[i].impulse;
+        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > TREE_MOST_STRESS * p->scale) q[0] = q[1] = R(0);
+    }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        tree_element *e = &p->element[i];
+        if (e->q * e->q * e->mobility > TREE_MOST_STRESS * p->scale) e->q = R(0);
+    }
+}
+
+void laconic_tree_follow(tree_problem *p) {
+    p->nu.base = p->free.base;
+    for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = p->free.hinge[j];
+    laconic_tree_take_forces(&p->nu, p);
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        tree_contact *c = &p->contact[i];
+        const real push = c->wheel->inertia_kgm2 * c->load.free_speed + c->wheel->rim[0] * c->impulse[0] +
+                          c->wheel->rim[1] * c->impulse[1];
+        c->speed = tree_turning(c, R(0), c->load.axle, push).speed;
+    }
+}
+
+static void tree_rest(tree_problem *p) {
+    p->nu.base = none;
+    for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = R(0);
+    for (int32_t i = 0; i < p->contact_count; i++) p->contact[i].speed = R(0);
+}
+
+static void tree_snap(tree_problem *p) {
+    real energy = tree_square(&p->nu, p->m->body_count);
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        const tree_contact *c = &p->contact[i];
+        energy += c->wheel->inertia_kgm2 * c->speed * c->speed;
+    }
+    if (energy <= TREE_SNAP * TREE_SNAP * p->scale) tree_rest(p);
+}
+
+static real tree_imbalance_square(const tree_problem *p) {
+    tree_vector rest;
+    laconic_tree_imbalance(&rest, p);
+    return tree_square(&rest, p->m->body_count);
+}
+
+static bool tree_is_solved(const tree_problem *p, real residual, real times) {
+    const real most = times * TREE_TOLERANCE * TREE_TOLERANCE * p->scale;
+    return residual <= most && residual + tree_imbalance_square(p) <= most;
+}
+
+/* All that rounding leaves to find. */
+static bool tree_is_resolved(tree_search *at) {
+    tree_problem *p = at->p;
+    real stress = R(0), residual = laconic_tree_see(at);
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        const tree_contact *c = &p->contact[i];
+        stress += (c->impulse[0] * c->impulse[0] + c->impulse[1] * c->impulse[1]) * c->mobility;
+        residual -= at->sight[i].firm;
+    }
+    for (int32_t i = 0; i < p->element_count; i++) stress += p->element[i].q * p->element[i].q * p->element[i].mobility;
+    return residual + tree_imbalance_square(p) <=
+           TREE_RESOLVED * TREE_RESOLVED * p->scale + TREE_ROUNDED * TREE_ROUNDED * stress;
+}
+
+typedef struct tree_kept {
+    tree_vector nu;
+    real speed[TREE_WHEELS], impulse[TREE_WHEELS][2], q[TREE_ELEMENTS];
+} tree_kept;
+
+static void tree_keep(tree_kept *kept, const tree_problem *p) {
+    kept->nu = p->nu;
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        kept->speed[i] = p->contact[i].speed;
+        for (int m = 0; m < 2; m++) kept->impulse[i][m] = p->contact[i].impulse[m];
+    }
+    for (int32_t i = 0; i < p->element_count; i++) kept->q[i] = p->element[i].q;
+}
+
+static void tree_go_back(tree_problem *p, const tree_kept *kept) {
+    p->nu = kept->nu;
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        p->contact[i].speed = kept->speed[i];
+        for (int m = 0; m < 2; m++) p->contact[i].impulse[m] = kept->impulse[i][m];
+    }
+    for (int32_t i = 0; i < p->element_count; i++) p->element[i].q = kept->q[i];
+}
+
+/* How far the contact's impulse can grow by such a change until it is at the border of its grip. */
+static real tree_reach(const tree_contact *c, const real change[2]) {
+    const real *p = c->impulse, a = change[0] * change[0] + change[1] * change[1];
+    const real b = p[0] * change[0] + p[1] * change[1];
+    const real left = c->load.grip * c->load.grip - (p[0] * p[0] + p[1] * p[1]), root = b * b + a * left;
+    return a > R(0) && left > R(0) && root > R(0) ? left / (b + quick_root(root)) : LACONIC_REAL_MAX;
+}
+
+static real tree_element_reach(const tree_element *e, real change) {
+    if (change > R(0) && e->high < LACONIC_REAL_MAX) return (e->high - e->q) / change;
+    if (change < R(0) && e->low > -LACONIC_REAL_MAX) return (e->low - e->q) / change;
+    return LACONIC_REAL_MAX;
+}
+
+/* The square of the change of impulses and q between two passes, less `share` of another change. */
+static real tree_change(const tree_problem *p, const tree_kept *from, const tree_kept *to, const tree_kept *less,
+                        real share) {
+    real sum = R(0);
+    for (int32_t i = 0; i < p->contact_count; i++)
+        for (int m = 0; m < 2; m++) {
+            const real was = from->impulse[i][m] - less->impulse[i][m];
+            const real off = to->impulse[i][m] - from->impulse[i][m] - share * was;
+            sum += off * off * p->contact[i].mobility;
+        }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const real off = to->q[i] - from->q[i] - share * (from->q[i] - less->q[i]);
+        sum += off * off * p->element[i].mobility;
+    }
+    return sum;
+}
+
+/* How often the last change can be added until something is at its bound. */
+static real tree_least_reach(const tree_search *at, const tree_kept *before) {
+    const tree_problem *p = at->p;
+    real reach = LACONIC_REAL_MAX;
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        const tree_contact *c = &p->contact[i];
+        const real change[2] = {c->impulse[0] - before->impulse[i][0], c->impulse[1] - before->impulse[i][1]};
+        const real here = at->sight[i].length > R(0) ? LACONIC_REAL_MAX : tree_reach(c, change);
+        if (here < reach) reach = here;
+    }
+    for (int32_t i = 0; i < p->element_count; i++) {
+        const tree_element *e = &p->element[i];
+        if (!(at->element[i].stiffness > R(0))) continue;
+        const real here = tree_element_reach(e, e->q - before->q[i]);
+        if (here < reach) reach = here;
+    }
+    return reach;
+}
+
+/* Contacts and elements that all stick may ask for more than any motion fulfils, by as little as two casters that are
+ * not quite in line. Each pass then stresses them against each other by as little more, until the weakest slips: far
+ * too many passes. Goes there at once, along the change of a pass, if that of the next is the same: rounding errors
+ * would stress them in vain. Returns false where nothing gives way. */
+RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
+    tree_problem *p = at->p;
+    tree_kept first, second, now;
+    tree_keep(&first, p);
+    laconic_tree_exact_pass(at);
+    tree_keep(&second, p);
+    (void)laconic_tree_see(at);
+    laconic_tree_exact_pass(at);
+    tree_keep(&now, p);
+    *passes += 2;
+    if (tree_change(p, &second, &now, &first, R(1)) > TREE_SAME * tree_change(p, &second, &now, &first, R(0)))
+        return false;
+    const real reach = tree_least_reach(at, &second);
+    if (!(reach < TREE_FARTHEST)) return false;
+    for (int32_t i = 0; i < p->contact_count; i++)
+        for (int m = 0; m < 2; m++)
+            p->contact[i].impulse[m] += reach * (p->contact[i].impulse[m] - second.impulse[i][m]);
+    for (int32_t i = 0; i < p->element_count; i++) p->element[i].q += reach * (p->element[i].q - second.q[i]);
+    return true;
+}
+
+static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
+    real before = LACONIC_REAL_MAX;
+    int32_t stresses = 0;
+    for (int32_t pass = 0;; pass++) {
+        const real residual = laconic_tree_see(at);
+        ++*passes;
+        if (tree_is_solved(at->p, residual, R(1))) return true;
+        const bool stalls = pass > 1 && residual > TREE_WORTH_IT * before;
+        if (stalls && tree_is_solved(at->p, residual, TREE_NEARLY)) return true;
+        before = residual;
+        if (stalls && stresses < TREE_MOST_STRESSES && residual <= TREE_ALMOST * TREE_ALMOST * at->p->scale &&
+            tree_stress_to_slip(at, passes)) {
+            stresses++;
+            pass = 0;
+            continue;
+        }
+        if (pass == most || stalls) return false;
+        laconic_tree_exact_pass(at);
+    }
+}
+
+/* Passes along the central path, and from time to time exact ones: they finish at once where they converge. */
+RARE bool tree_search_along_path(tree_search *at, int32_t *passes) {
+    tree_path path;
+    tree_kept kept;
+    at->p->penalty = PENALTY; /* rounding: contacts that hold each other may need it */
+    for (int32_t i = 0; i < at->p->element_count; i++) laconic_tree_stiffen(&at->p->element[i], PENALTY);
+    laconic_tree_start_path(at->p, &path);
+    for (int32_t ahead = TREE_FIRST_AHEAD; *passes + ahead + TREE_TRIED + 1 <= TREE_MOST_PASSES; ahead = TREE_AHEAD) {
+        for (int32_t pass = 0; pass < ahead; pass++) laconic_tree_follow_path(at->p, &path);
+        *passes += ahead;
+        tree_keep(&kept, at->p);
+        if (tree_pass_exactly(at, TREE_TRIED, passes)) return true;
+        if (ahead == TREE_AHEAD && tree_is_solved(at->p, laconic_tree_see(at), TREE_CLOSE)) return true;
+        tree_go_back(at->p, &kept);
+        if (ahead == TREE_AHEAD && tree_is_resolved(at)) return true;
+    }
+    return false;
+}
+
+/* Nothing moves and nothing drives it: no forces, either. */
+RARE int32_t tree_nothing(tree_problem *p) {
+    tree_rest(p);
+    for (int32_t i = 0; i < p->contact_count; i++) p->contact[i].impulse[0] = p->contact[i].impulse[1] = R(0);
+    for (int32_t i = 0; i < p->element_count; i++) p->element[i].q = R(0);
+    return 1;
+}
+
+int32_t laconic_tree_solve(tree_problem *p) {
+    tree_search at;
+    int32_t passes = 0;
+    at.p = p;
+    p->scale = tree_free_energy(p);
+    if (!is_finite(p->scale)) return 0;
+    if (p->scale < TREE_SMALLEST_ENERGY) return tree_nothing(p);
+    tree_forget_stress(p);
+    laconic_tree_follow(p);
+    if (!tree_pass_exactly(&at, TREE_EXACT_PASSES, &passes) && !tree_search_along_path(&at, &passes)) return 0;
+    tree_snap(p);
+    return passes;
+}
+
+#endif

@@ -1,0 +1,126 @@
+/* The convex problem of one step of a tree, in coordinates ζ in which the energy of the bodies is ½|ζ|²:
+ *
+ *     ½|ν − ν*|² + Σ contacts [ ½ J (s − s*)² + motor, axle and grip as in friction_solver.h ] + Σ elements
+ *
+ * An element is a scalar law on one row: x − target = compliance · q + normal cone of [low, high] with x = row·ν. Dry
+ * friction, stops, servos, motors with limits, prescribed rates and scrub are all of this kind. */
+#ifndef LACONIC_TREE_SOLVER_H
+#define LACONIC_TREE_SOLVER_H
+
+#include "friction_internals.h"
+#include "tree_posture.h"
+
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+
+#define TREE_WHEELS LACONIC_MAX_WHEELS
+#define TREE_ELEMENTS (4 * LACONIC_MAX_BODIES + LACONIC_MAX_WHEELS)
+#define TREE_MOST_PASSES 50
+
+typedef struct tree_contact {
+    const tree_body *on;
+    const laconic_tree_rim *wheel;
+    tree_row row[2];               /* along; k across                                    */
+    real along, cross_row, across; /* row[0]·row[0], row[0]·row[1], row[1]·row[1]        */
+    real mobility, inverse_mobility, lateral_mass, row_mass[2];
+    real creep; /* slip per impulse of a tyre below its limit; mobility includes it */
+    friction_load load;
+    real speed, impulse[2]; /* found; on entry the guess of the impulse           */
+} tree_contact;
+
+typedef struct tree_element {
+    const tree_body *on;
+    const tree_row *row;
+    real low, high; /* of q; ∓LACONIC_REAL_MAX: no bound */
+    real compliance, target, mobility;
+    real all, inverse_all; /* mobility + compliance                                          */
+    real share, stiffness; /* of the law inside: q = share·q + stiffness (x − target)        */
+    real q;                /* found; on entry the guess                                      */
+} tree_element;
+
+typedef struct tree_problem {
+    const tree_model *m;
+    tree_vector free, nu;
+    real scale;                           /* twice the energy of the free motion       */
+    real penalty;                         /* stiffness where something holds, over its mass */
+    int32_t contact_count, element_count; /* elements of one row follow each other */
+    tree_contact contact[TREE_WHEELS];
+    tree_element element[TREE_ELEMENTS];
+    tree_row hinge_row[TREE_HINGES], scrub_row[TREE_WHEELS];
+} tree_problem;
+
+/* Fills what contacts and elements need besides rows, loads, bounds and targets. */
+void laconic_tree_prepare_problem(tree_problem *p);
+
+/* Finds nu, speeds, impulses and q. Returns the number of passes; 0: refused, as friction_solver.h states. */
+int32_t laconic_tree_solve(tree_problem *p);
+
+/* What both kinds of pass give for a contact, for the change of ν in the pass: impulse = impulse + S slip of a standing
+ * wheel, speed = speed + turn·slip. */
+typedef struct tree_law {
+    real xx, xy, yy, impulse[2], speed, turn[2];
+} tree_law;
+
+typedef struct tree_element_law {
+    real stiffness, q;
+} tree_element_law;
+
+/* Adds the laws to the equations, solves them, and moves ν. `by` gets the change of ν. */
+void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by);
+
+/* Subtracts what impulses and q do. */
+void laconic_tree_take_forces(tree_vector *from, const tree_problem *p);
+
+/* What impulses and q leave of the bodies' equations. */
+void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p);
+
+/* Sets the speeds to which impulses and q lead. */
+void laconic_tree_follow(tree_problem *p);
+
+/* Where the search is on the central path of the smoothed problem. */
+typedef struct tree_path {
+    real softness, fastest, axle[TREE_WHEELS], motor[TREE_WHEELS];
+} tree_path;
+
+void laconic_tree_start_path(tree_problem *p, tree_path *path);
+void laconic_tree_follow_path(tree_problem *p, tree_path *path);
+
+static inline real tree_boxed(real x, real low, real high) { return x > high ? high : (x < low ? low : x); }
+static inline bool tree_unbounded(const tree_element *e) {
+    return e->high >= LACONIC_REAL_MAX && e->low <= -LACONIC_REAL_MAX;
+}
+static inline bool tree_one_sided(const tree_element *e) {
+    return e->high >= LACONIC_REAL_MAX || e->low <= -LACONIC_REAL_MAX;
+}
+
+/* ------------------------------------------------------------------------------- exact passes -- */
+
+/* What a pass sees of a contact. */
+typedef struct tree_sight {
+    real moved[2], t[2], length, axle, firm, rest;
+    bool locked;
+} tree_sight;
+
+typedef struct tree_search {
+    tree_problem *p;
+    tree_sight sight[TREE_WHEELS];
+    tree_element_law element[TREE_ELEMENTS];
+} tree_search;
+
+/* Looks at all contacts and elements. Returns the square of their residual. */
+real laconic_tree_see(tree_search *at);
+
+/* Replaces each by its law as it was seen, and moves to the solution of these. */
+void laconic_tree_exact_pass(tree_search *at);
+
+/* Sets the law of an element inside its bounds; `of_mass`: the penalty, over the mass that it holds. */
+void laconic_tree_stiffen(tree_element *e, real of_mass);
+
+/* A wheel's speed, and how its resistance grows with it: friction_internals.h. */
+static inline turning tree_turning(const tree_contact *c, real added, real axle, real push) {
+    friction_wheel of;
+    of.inertia = c->wheel->inertia_kgm2;
+    return turning_of(&of, &c->load, added, axle, push);
+}
+
+#endif
+#endif

@@ -1,0 +1,420 @@
+/* One step of a tree on ground with friction: backward Euler for bodies, hinges and wheels together, first order.
+ *
+ *   1. loops and sampled servos look; loads by statics; the supply's voltage
+ *   2. the velocities of all bodies, unchanged in the world, at the angles ψ^ = ψ + ½ h ψ' in the axes at the end:
+ *      their momenta Jᵀ m V, and M. Solving M z* = Jᵀ m V would project them onto the hinges there. A projection does
+ *      not lengthen, so free motion never gains energy
+ *   3. what is linear in ψ' joins M: viscous friction, springs at the next ψ^ + h ψ', drives without limits. All other
+ *      laws of hinges are elements of the convex problem of tree_solver.h
+ *   4. ψ⁺ = ψ + ½ h (ψ' + ψ'⁺), pose and wheel angles by the mean of old and new speeds, energies by kind
+ *
+ * A step that the solver refuses is taken in 2, 4 or 8 parts before it is refused. */
+#include "tree_step.h"
+
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+#define TREE_MOST_PARTS 8
+#define TREE_STANDING_M_PER_S R(1e-6) /* else a fading scrub that holds a stress would creep, ever slower, for ever */
+#ifdef LACONIC_SINGLE
+#define TREE_LARGEST R(1e8)
+#else
+#define TREE_LARGEST R(1e30)
+#endif
+
+/* ------------------------------------------------------------------------------------- free motion -- */
+
+static void tree_find_posture(tree_part *p, const tree_state *s) {
+    const tree_model *m = p->m;
+    direction turned[TREE_HINGES];
+    turned[0] = direction_with(R(1), R(0));
+    for (int32_t j = 0; j < m->body_count; j++) {
+        const tree_body *link = &m->body[j + 1];
+        const real turn = R(0.5) * p->h * s->z[3 + j];
+        turned[j] =
+            direction_of_binary_angle((laconic_binary_angle)(s->hinge[j].fraction + laconic_binary_angle_of(turn)));
+        p->ahead[j] = R(0);
+        if (link->stiffness_Nm > R(0) || link->stops || link->servo)
+            p->ahead[j] = heading_unwrapped(&s->hinge[j]) + turn;
+    }
+    tree_place(&p->at, m, turned);
+    for (int32_t i = 0; i < m->wheel_count; i++) tree_place_wheel(&p->place[i], &p->at, &m->wheel[i]);
+}
+
+/* Velocities that are constant in the world turn against the axes of body 0. */
+static void tree_carry(tree_part *p, const tree_state *s) {
+    const direction by = laconic_direction_of_angle(p->h * s->z[2]);
+    for (int32_t b = 0; b <= p->m->body_count; b++) {
+        const vector v = s->body[b];
+        p->carried[b] = vector_of(by.cosine * v.x + by.sine * v.y, by.cosine * v.y - by.sine * v.x, v.z);
+    }
+}
+
+static vector tree_seen(direction heading, const real world[2]) {
+    return vector_of(heading.cosine * world[0] + heading.sine * world[1],
+                     heading.cosine * world[1] - heading.sine * world[0], R(0));
+}
+
+/* Outer forces and the slope's pull on each body, about its centre of mass. */
+static void tree_pull(tree_part *p, const tree_state *s) {
+    const laconic_input *in = &p->in->hinged.base;
+    const bool world = in->world_force_N[0] != R(0) || in->world_force_N[1] != R(0);
+    for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = none;
+    p->pull[0] = vector_of(in->body_force_N[0], in->body_force_N[1], in->body_moment_Nm);
+    p->end = direction_with(R(1), R(0));
+    if (!world && !p->m->sloped) return;
+    p->end = direction_of_binary_angle(
+        (laconic_binary_angle)(s->heading.fraction + laconic_binary_angle_of(p->h * s->z[2])));
+    const vector force = tree_seen(p->end, in->world_force_N), down = tree_seen(p->end, p->m->pull_m_per_s2);
+    p->pull[0] = plus(p->pull[0], force);
+    p->pull[0].z += in->world_force_point_m[0] * force.y - in->world_force_point_m[1] * force.x;
+    for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));
+}
+
+static vector tree_momentum(const tree_part *p, int32_t b) {
+    const tree_body *link = &p->m->body[b];
+    const vector v = p->carried[b], f = p->pull[b];
+    return vector_of(link->mass_kg * v.x + p->h * f.x, link->mass_kg * v.y + p->h * f.y,
+                     link->yaw_inertia_kgm2 * v.z + p->h * f.z);
+}
+
+/* Jᵀ (m V + h force) into free; M into the factor's place. */
+static void tree_find_momenta(tree_part *p) {
+    vector momentum[TREE_BODIES];
+    momentum[0] = tree_momentum(p, 0);
+    for (int32_t b = 1; b <= p->m->body_count; b++) momentum[b] = tree_momentum(p, b);
+    tree_gather(&p->problem.free, &p->at, p->m, momentum);
+    tree_mass(&p->factor.l, &p->at, p->m);
+}
+
+/* ------------------------------------------------------------------------------------------ hinges -- */
+
+static tree_element *tree_new_element(tree_part *p, int32_t b, const tree_row *row) {
+    tree_element *e = &p->problem.element[p->problem.element_count++];
+    e->on = &p->m->body[b];
+    e->row = row;
+    e->low = -LACONIC_REAL_MAX;
+    e->high = LACONIC_REAL_MAX;
+    e->compliance = e->target = R(0);
+    return e;
+}
+
+static tree_element *tree_new_hinge_element(tree_part *p, int32_t b, int32_t *index) {
+    *index = p->problem.element_count;
+    return tree_new_element(p, b, &p->problem.hinge_row[b - 1]);
+}
+
+static void tree_add_dry(tree_part *p, int32_t b, real bound, real guess) {
+    tree_element *e = tree_new_hinge_element(p, b, &p->hinge[b - 1].dry);
+    e->high = bound;
+    e->low = -bound;
+    e->q = guess;
+}
+
+/* Torque start − slope ψ', cut to the limit. */
+static void tree_add_limited(tree_part *p, int32_t b, real start, real slope, real limit, real guess) {
+    tree_element *e = tree_new_hinge_element(p, b, &p->hinge[b - 1].drive);
+    e->high = p->h * limit;
+    e->low = -e->high;
+    e->compliance = R(1) / (p->h * slope);
+    e->target = start / slope;
+    e->q = guess;
+}
+
+/* A gap that ψ^ has passed, by rounding or a larger step than the last, counts as 0: a stop never throws. */
+static void tree_add_stops(tree_part *p, int32_t b, const tree_state *s) {
+    const tree_body *link = &p->m->body[b];
+    const real above = link->stop_high_rad - p->ahead[b - 1], below = link->stop_low_rad - p->ahead[b - 1];
+    tree_element *high = tree_new_hinge_element(p, b, &p->hinge[b - 1].stop);
+    high->low = R(0);
+    high->target = above > R(0) ? above / p->h : R(0);
+    high->q = p->h * s->stop_Nm[b - 1][0];
+    tree_element *low = tree_new_element(p, b, &p->problem.hinge_row[b - 1]);
+    low->high = R(0);
+    low->target = below < R(0) ? below / p->h : R(0);
+    low->q = p->h * s->stop_Nm[b - 1][1];
+}
+
+static void tree_add_prescribed(tree_part *p, int32_t b, const tree_state *s) {
+    tree_element *e = tree_new_hinge_element(p, b, &p->hinge[b - 1].drive);
+    e->target = p->in->hinged.hinge_rate_rad_per_s[b - 1];
+    e->q = p->h * s->drive_Nm[b - 1];
+    p->problem.free.hinge[b - 1] += p->m->body[b].padding_kgm2 * e->target;
+}
+
+/* A drive's torque start − slope ψ': with a limit an element, else part of the matrix. */
+static void tree_drive_hinge(tree_part *p, int32_t b, real start, real slope, real limit, const tree_state *s) {
+    const bool limited = limit < LACONIC_REAL_MAX;
+    if (limited && slope > R(0)) {
+        tree_add_limited(p, b, start, slope, limit, p->h * s->drive_Nm[b - 1]);
+        return;
+    }
+    p->hinge[b - 1].torque_Nm = limited ? cut(start, limit) : start;
+    p->hinge[b - 1].slope_Nms = slope;
+    p->problem.free.hinge[b - 1] += p->h * p->hinge[b - 1].torque_Nm;
+    p->factor.l.node[b - 1].along[p->m->body[b].depth - 1] += p->h * slope;
+}
+
+static void tree_add_servo(tree_part *p, int32_t b, const tree_state *s) {
+    const tree_body *link = &p->m->body[b];
+    const real limit = link->servo_limit_Nm > R(0) ? link->servo_limit_Nm : LACONIC_REAL_MAX;
+    if (link->sampled) {
+        tree_drive_hinge(p, b, s->control_command[b - 1], R(0), LACONIC_REAL_MAX, s);
+        return;
+    }
+    const real start = link->servo_gain_Nm_per_rad * (p->in->hinge_angle_rad[b - 1] - p->ahead[b - 1]) +
+                       link->servo_damping_Nms * p->in->hinged.hinge_rate_rad_per_s[b - 1];
+    tree_drive_hinge(p, b, start, link->servo_gain_Nm_per_rad * p->h + link->servo_damping_Nms, limit, s);
+}
+
+static void tree_add_motor(tree_part *p, int32_t b, const tree_state *s) {
+    const int32_t axis = p->m->wheel_count + b - 1;
+    const laconic_tree_motor *motor = &p->m->motor[axis];
+    const real volts = p->terminal_V < R(0) ? p->command_V[axis] : cut(p->command_V[axis], p->terminal_V);
+    tree_drive_hinge(p, b, motor->gain_Nm_per_V * volts, motor->back_emf_Nms, motor->torque_limit_Nm, s);
+}
+
+static void tree_add_hinge(tree_part *p, int32_t b, const tree_state *s) {
+    const tree_body *link = &p->m->body[b];
+    const real spring = link->stiffness_Nm, h = p->h;
+    real torque = p->in->hinged.hinge_torque_Nm[b - 1];
+    if (spring > R(0)) torque += spring * (link->rest_rad - p->ahead[b - 1]);
+    p->problem.free.hinge[b - 1] += h * torque;
+    p->factor.l.node[b - 1].along[link->depth - 1] += h * link->damping_Nms + h * h * spring;
+    p->hinge[b - 1].drive = p->hinge[b - 1].dry = p->hinge[b - 1].stop = -1;
+    p->hinge[b - 1].torque_Nm = p->hinge[b - 1].slope_Nms = R(0);
+    if (link->hinge == LACONIC_HINGE_PRESCRIBED) tree_add_prescribed(p, b, s);
+    if (link->servo) tree_add_servo(p, b, s);
+    if (tree_has_motor(p->m, b)) tree_add_motor(p, b, s);
+    if (link->dry_friction_Nm > R(0)) tree_add_dry(p, b, h * link->dry_friction_Nm, h * s->dry_Nm[b - 1]);
+    if (link->stops) tree_add_stops(p, b, s);
+}
+
+INLINE void tree_transform_hinge(tree_part *p, int32_t b, bool star) {
+    const tree_body *link = &p->m->body[b];
+    tree_row *row = &p->problem.hinge_row[b - 1];
+    if (p->hinge[b - 1].drive < 0 && p->hinge[b - 1].dry < 0 && p->hinge[b - 1].stop < 0) return;
+    row->base = none;
+    for (int32_t k = 0; k < link->depth - 1 && !star; k++) row->along[k] = R(0);
+    row->along[star ? 0 : link->depth - 1] = R(1);
+    tree_back_row(row, &p->factor, link, star);
+}
+
+/* ------------------------------------------------------------------------------------------ wheels -- */
+
+INLINE void tree_fill_rows(tree_contact *c, const tree_part *p, const tree_place_of_wheel *w, bool star) {
+    const direction u = w->pull;
+    const real k = c->wheel->drag;
+    c->row[0].base = vector_of(u.cosine, u.sine, w->x * u.sine - w->y * u.cosine);
+    c->row[1].base = vector_of(-k * u.sine, k * u.cosine, k * (w->x * u.cosine + w->y * u.sine));
+    for (int32_t l = 0; l < tree_depth(c->on, star); l++) {
+        const int32_t b = c->on->path[l] + 1;
+        const real x = w->x - p->at.hinge_x[b], y = w->y - p->at.hinge_y[b];
+        c->row[0].along[l] = x * u.sine - y * u.cosine;
+        c->row[1].along[l] = k * (x * u.cosine + y * u.sine);
+    }
+    tree_back_row(&c->row[0], &p->factor, c->on, star);
+    tree_back_row(&c->row[1], &p->factor, c->on, star);
+}
+
+static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_state *s, int32_t i) {
+    const laconic_tree_rim *w = c->wheel;
+    const laconic_tree_motor *a = &p->m->motor[i];
+    const bool driven = a->circuit == LACONIC_MOTOR_DRIVEN;
+    const real volts = !driven ? R(0) : p->terminal_V < R(0) ? p->command_V[i] : cut(p->command_V[i], p->terminal_V);
+    friction_load *l = &c->load;
+    l->grip = p->h * w->friction_coefficient * p->loads.carried_N[i];
+    l->axle = p->h * w->dry_Nm;
+    l->drive = p->h * a->gain_Nm_per_V * volts;
+    l->drive_slope = a->circuit == LACONIC_MOTOR_OPEN ? R(0) : p->h * a->back_emf_Nms;
+    l->drive_limit = driven && a->torque_limit_Nm < LACONIC_REAL_MAX ? p->h * a->torque_limit_Nm : LACONIC_REAL_MAX;
+    l->viscous = p->h * a->viscous_Nms;
+    l->free_speed = s->wheel_speed_rad_per_s[i] + p->h * p->in->hinged.base.axle_torque_Nm[i] / w->inertia_kgm2;
+    if (!w->locked) return;
+    l->axle = R(2) * w->rim_size * l->grip + w->inertia_kgm2; /* more than the contact can overcome */
+    l->drive = l->drive_slope = l->viscous = l->free_speed = R(0);
+}
+
+RARE real tree_creep_of(const tree_contact *c, const tree_state *s, int32_t i) {
+    const real rim_speed = c->wheel->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
+    if (!(c->load.grip > R(0)) || rim_speed < TREE_STANDING_M_PER_S) return R(0);
+    return rim_speed * c->wheel->creep / c->load.grip;
+}
+
+RARE void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
+    const laconic_tree_rim *w = &p->m->wheel[i];
+    tree_row *row = &p->problem.scrub_row[i];
+    const real bound = p->h * w->friction_coefficient * p->loads.carried_N[i] * w->scrub_radius_m;
+    if (!(bound > R(0))) return;
+    p->scrub[i] = p->problem.element_count;
+    tree_element *e = tree_new_element(p, w->body, row);
+    row->base = vector_of(R(0), R(0), R(1));
+    for (int32_t k = 0; k < e->on->depth; k++) row->along[k] = R(1);
+    tree_back_row(row, &p->factor, e->on, false);
+    e->high = bound;
+    e->low = -bound;
+    const real rim_speed = w->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
+    if (w->scrub_fade_m > R(0) && rim_speed > TREE_STANDING_M_PER_S)
+        e->compliance = rim_speed / (w->scrub_fade_m * bound);
+    e->q = p->h * s->scrub_Nm[i];
+}
+
+INLINE void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i, bool star) {
+    tree_contact *c = &p->problem.contact[i];
+    c->wheel = &p->m->wheel[i];
+    c->on = &p->m->body[c->wheel->body];
+    tree_fill_rows(c, p, &p->place[i], star);
+    tree_load_wheel(c, p, s, i);
+    c->creep = c->wheel->creep > R(0) ? tree_creep_of(c, s, i) : R(0);
+    for (int k = 0; k < 2; k++) c->impulse[k] = p->h * s->grip_N[i][k];
+    p->scrub[i] = -1;
+    if (c->wheel->scrub_radius_m > R(0)) tree_add_scrub(p, s, i);
+}
+
+/* --------------------------------------------------------------------------------------- the step -- */
+
+INLINE void tree_build_rows(tree_part *p, const tree_state *s, bool star) {
+    for (int32_t b = 1; b <= p->m->body_count; b++) tree_transform_hinge(p, b, star);
+    for (int32_t i = 0; i < p->m->wheel_count; i++) tree_add_wheel(p, s, i, star);
+}
+
+RARE void tree_build_rows_deep(tree_part *p, const tree_state *s) { tree_build_rows(p, s, false); }
+
+static void tree_build(tree_part *p, const tree_state *s) {
+    tree_problem *q = &p->problem;
+    q->m = p->m;
+    q->contact_count = p->m->wheel_count;
+    q->element_count = 0;
+    for (int32_t b = 1; b <= p->m->body_count; b++) tree_add_hinge(p, b, s);
+    laconic_tree_factor(&p->factor, p->m);
+    tree_back_vector(&q->free, &p->factor, p->m);
+    if (p->m->star)
+        tree_build_rows(p, s, true);
+    else
+        tree_build_rows_deep(p, s);
+    laconic_tree_prepare_problem(q);
+}
+
+static void tree_command(tree_part *p, const tree_state *s) {
+    const tree_model *m = p->m;
+    for (int32_t i = 0; i < m->wheel_count; i++) p->command_V[i] = p->in->hinged.base.voltage_V[i];
+    for (int32_t b = 1; b <= m->body_count; b++) {
+        real *volts = &p->command_V[m->wheel_count + b - 1];
+        *volts = tree_has_motor(m, b) ? p->in->hinged.hinge_voltage_V[b - 1] : R(0);
+        if (tree_has_motor(m, b) && m->body[b].sampled) *volts += s->control_command[b - 1];
+    }
+    p->terminal_V = laconic_tree_terminal_voltage(m, p->command_V, s);
+}
+
+static laconic_status tree_take(tree_part *p, tree_state *s) {
+    tree_find_posture(p, s);
+    laconic_tree_loads(&p->loads, p->m, &p->at, p->place, s);
+    tree_command(p, s);
+    tree_carry(p, s);
+    tree_pull(p, s);
+    tree_find_momenta(p);
+    tree_build(p, s);
+    p->passes = laconic_tree_solve(&p->problem);
+    if (p->passes == 0) return LACONIC_STEP_UNSOLVED;
+    tree_forward(p->z, &p->problem.nu, &p->factor, p->m);
+    real sum = R(0);
+    for (int32_t k = 0; k < 3 + p->m->body_count; k++) sum += magnitude(p->z[k]);
+    return sum <= TREE_LARGEST ? laconic_tree_accept(p, s) : LACONIC_OVERFLOW;
+}
+
+RARE laconic_status tree_take_parts(tree_part *p, tree_state *s, int32_t count) {
+    tree_state end = *s;
+    laconic_status status = LACONIC_OK;
+    for (int32_t k = 0; k < count && status == LACONIC_OK; k++) status = tree_take(p, &end);
+    if (status == LACONIC_OK) *s = end;
+    return status;
+}
+
+static laconic_status tree_finite(real value, int32_t field, int32_t item, laconic_refusal *why) {
+    if (is_finite(value)) return LACONIC_OK;
+    return refuse(why, LACONIC_NOT_FINITE, (laconic_field)field, item, value, R(0));
+}
+
+/* Finds which number it is. */
+RARE laconic_status tree_refuse_input(const tree_model *m, const laconic_tree_input *in, laconic_refusal *why) {
+    const laconic_articulated_input *h = &in->hinged;
+    laconic_status status = LACONIC_OK;
+    for (int32_t i = 0; status == LACONIC_OK && i < m->wheel_count; i++) {
+        status = tree_finite(h->base.voltage_V[i], LACONIC_FIELD_VOLTAGE, i + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(h->base.axle_torque_Nm[i], LACONIC_FIELD_AXLE_TORQUE, i + 1, why);
+    }
+    for (int32_t b = 0; status == LACONIC_OK && b < m->body_count; b++) {
+        status = tree_finite(h->hinge_voltage_V[b], LACONIC_FIELD_OF_HINGE_VOLTAGE, b + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(h->hinge_torque_Nm[b], LACONIC_FIELD_OF_HINGE_TORQUE, b + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(h->hinge_rate_rad_per_s[b], LACONIC_FIELD_OF_HINGE_RATE, b + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(in->hinge_angle_rad[b], LACONIC_FIELD_OF_HINGE_ANGLE, b + 1, why);
+    }
+    for (int32_t k = 0; status == LACONIC_OK && k < 2; k++) {
+        status = tree_finite(h->base.body_force_N[k], LACONIC_FIELD_BODY_FORCE, k + 1, why);
+        if (status == LACONIC_OK) status = tree_finite(h->base.world_force_N[k], LACONIC_FIELD_WORLD_FORCE, k + 1, why);
+        if (status == LACONIC_OK)
+            status = tree_finite(h->base.world_force_point_m[k], LACONIC_FIELD_WORLD_FORCE_POINT, k + 1, why);
+    }
+    return status == LACONIC_OK ? tree_finite(h->base.body_moment_Nm, LACONIC_FIELD_BODY_MOMENT, 0, why) : status;
+}
+
+/* 0, or NaN where a number is not finite. */
+static real tree_check_of(const tree_model *m, const laconic_tree_input *in) {
+    const laconic_input *base = &in->hinged.base;
+    real sum = zero_if_finite(base->body_force_N[0]) + zero_if_finite(base->body_force_N[1]) +
+               zero_if_finite(base->body_moment_Nm) + zero_if_finite(base->world_force_N[0]) +
+               zero_if_finite(base->world_force_N[1]) + zero_if_finite(base->world_force_point_m[0]) +
+               zero_if_finite(base->world_force_point_m[1]);
+    for (int32_t i = 0; i < m->wheel_count; i++)
+        sum += zero_if_finite(base->voltage_V[i]) + zero_if_finite(base->axle_torque_Nm[i]);
+    for (int32_t b = 0; b < m->body_count; b++)
+        sum += zero_if_finite(in->hinged.hinge_voltage_V[b]) + zero_if_finite(in->hinged.hinge_torque_Nm[b]) +
+               zero_if_finite(in->hinged.hinge_rate_rad_per_s[b]) + zero_if_finite(in->hinge_angle_rad[b]);
+    return sum;
+}
+
+static laconic_status tree_check_step(const tree_model *m, real step_s, const tree_state *s,
+                                      const laconic_tree_input *held, laconic_refusal *why) {
+    bool room = heading_has_room(&s->heading);
+    if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    if (!(tree_check_of(m, held) == R(0))) return tree_refuse_input(m, held, why);
+    for (int32_t b = 0; b < m->body_count; b++) room = room && heading_has_room(&s->hinge[b]);
+    return room ? LACONIC_OK : refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
+}
+
+laconic_status laconic_tree_step(const laconic_tree_model *model, laconic_real step_s, laconic_tree_state *state,
+                                 const laconic_tree_input *held, laconic_refusal *why) {
+    laconic_status status = tree_check_step(model, step_s, state, held, why);
+    int32_t wait[TREE_HINGES] = {0};
+    real command[TREE_HINGES] = {R(0)};
+    tree_part p;
+    if (status != LACONIC_OK) return status;
+    for (int32_t b = 0; model->controlled && b < model->body_count; b++) {
+        wait[b] = state->control_wait[b];
+        command[b] = state->control_command[b];
+    }
+    if (model->controlled) status = laconic_tree_control(model, step_s, state, held, why);
+    p.m = model;
+    p.in = held;
+    p.h = step_s;
+    if (status == LACONIC_OK) {
+        status = tree_take(&p, state);
+        for (int32_t count = 2; count <= TREE_MOST_PARTS && status == LACONIC_STEP_UNSOLVED; count *= 2) {
+            p.h = step_s / (real)count;
+            status = tree_take_parts(&p, state, count);
+        }
+        if (status != LACONIC_OK)
+            (void)refuse(why, status, status == LACONIC_STEP_UNSOLVED ? LACONIC_FIELD_STEP : LACONIC_FIELD_NONE, 0,
+                         step_s, R(0));
+    }
+    for (int32_t b = 0; status != LACONIC_OK && model->controlled && b < model->body_count; b++) {
+        state->control_wait[b] = wait[b];
+        state->control_command[b] = command[b];
+    }
+    return status;
+}
+
+#endif

@@ -1,0 +1,100 @@
+/* What the files of a step share: the part of a step that is being computed. */
+#ifndef LACONIC_TREE_STEP_H
+#define LACONIC_TREE_STEP_H
+
+#include "tree_solver.h"
+
+#if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+
+typedef laconic_tree_state tree_state;
+
+/* Where a wheel's contact is, and its direction u: axes of body 0, from S_0. */
+typedef struct tree_place_of_wheel {
+    real x, y;
+    direction pull;
+} tree_place_of_wheel;
+
+typedef struct tree_loads {
+    real carried_N[LACONIC_TREE_POINTS]; /* 0 where lifted                         */
+    real statics_N[LACONIC_TREE_POINTS]; /* below 0 where lifted, else what is carried */
+} tree_loads;
+
+/* The elements of a hinge (-1: none; stop: the high one, the low one follows), and a drive without limit, whose torque
+ * is torque − slope ψ'. */
+typedef struct tree_hinge_part {
+    int32_t drive, dry, stop;
+    real torque_Nm, slope_Nms;
+} tree_hinge_part;
+
+typedef struct tree_part {
+    const tree_model *m;
+    const laconic_tree_input *in;
+    real h;
+    tree_posture at;
+    direction end;               /* heading of body 0 at the end, where something depends on it */
+    vector carried[TREE_BODIES]; /* the bodies' velocities, in the axes at the end               */
+    vector pull[TREE_BODIES];    /* forces and moments from outside, axes at the end             */
+    real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */
+    tree_place_of_wheel place[TREE_WHEELS];
+    tree_loads loads;
+    real command_V[LACONIC_TREE_AXES], terminal_V;
+    tree_factor factor;
+    tree_problem problem;
+    tree_hinge_part hinge[TREE_HINGES];
+    int32_t scrub[TREE_WHEELS]; /* elements; -1: none                                            */
+    real z[LACONIC_TREE_SPEEDS];
+    int32_t passes;
+} tree_part;
+
+/* ------------------------------------------------------------------------------------- drives -- */
+
+typedef struct tree_motor_state {
+    real torque_Nm, current_A, voltage_V;
+    laconic_drive_limit limit;
+} tree_motor_state;
+
+/* `terminal_V`: of the supply; below 0: voltages are not cut. */
+tree_motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V);
+
+/* Voltage of the supply under the motors' currents at the speeds of the state; −1 without a supply. */
+real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], const tree_state *state);
+
+/* Lets loops and sampled servos look where it is time. Refuses STEP_DOES_NOT_FIT. */
+laconic_status laconic_tree_control(const tree_model *m, real step_s, tree_state *state, const laconic_tree_input *in,
+                                    laconic_refusal *why);
+
+static inline real tree_axis_speed(const tree_model *m, const tree_state *state, int32_t axis) {
+    return axis < m->wheel_count ? state->wheel_speed_rad_per_s[axis] : state->z[3 + axis - m->wheel_count];
+}
+
+static inline bool tree_has_motor(const tree_model *m, int32_t b) { return m->body[b].hinge == LACONIC_HINGE_MOTOR; }
+
+/* -------------------------------------------------------------------------------- loads, results -- */
+
+void laconic_tree_loads(tree_loads *loads, const tree_model *m, const tree_posture *at,
+                        const tree_place_of_wheel place[], const tree_state *state);
+
+/* Pose, angles, energies and forces of the part into the state. Refuses OVERFLOW, with the state as it was. */
+laconic_status laconic_tree_accept(const tree_part *p, tree_state *state);
+
+static inline void tree_place_wheel(tree_place_of_wheel *w, const tree_posture *at, const laconic_tree_rim *rim) {
+    const direction d = at->axes[rim->body];
+    w->x = at->hinge_x[rim->body] + (d.cosine * rim->x_m - d.sine * rim->y_m);
+    w->y = at->hinge_y[rim->body] + (d.sine * rim->x_m + d.cosine * rim->y_m);
+    w->pull = direction_with(d.cosine * rim->pull[0] - d.sine * rim->pull[1],
+                             d.sine * rim->pull[0] + d.cosine * rim->pull[1]);
+}
+
+static inline real tree_energy_twice(const tree_model *m, const tree_state *s) {
+    real sum = R(0);
+    for (int32_t b = 0; b <= m->body_count; b++) {
+        const vector v = s->body[b];
+        sum += m->body[b].mass_kg * (v.x * v.x + v.y * v.y) + m->body[b].yaw_inertia_kgm2 * v.z * v.z;
+    }
+    for (int32_t i = 0; i < m->wheel_count; i++)
+        sum += m->wheel[i].inertia_kgm2 * s->wheel_speed_rad_per_s[i] * s->wheel_speed_rad_per_s[i];
+    return sum;
+}
+
+#endif
+#endif
