@@ -172,3 +172,46 @@ def test_a_slope_is_left_out_and_the_words_say_so() -> None:
     assert "slope" in found.words["straight"][0]
     assert found.straight[0].held_by == study_hinges(laconic.read_scene("wheelchair"),
                                                      speeds_m_per_s=(1.0,)).straight[0].held_by
+
+
+TURNED = {"yaw_inertia_kgm2": 0.01, "steering_gain_Nm_per_V": 1.0, "steering_damping_Nms": 1.0}
+ARM = {"name": "arm", "hinge": "free", "hinge_x_m": 0.1, "mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "com_x_m": 0.2}
+
+
+def steered(kind: str, name: str, x: float, y: float, **more: Any) -> dict[str, Any]:
+    return {"kind": "fixed", "steered": kind, "name": name, "x_m": x, "y_m": y, **more}
+
+
+@pytest.mark.parametrize("vehicle", [
+    {"wheel": [steered("motor", "f", 0.3, 0.0, **TURNED), steered("motor", "r", -0.3, 0.0, **TURNED)]},
+    {"wheel": [{"kind": "omni", "distance_m": 0.2, "bearing_deg": b, "axle_deg": b} for b in (0, 120, 240)],
+     "trailer": [TRAILER], "caster": [{**CASTER, "mass_kg": 1.0}]},
+    {"wheel": [], "trailer": [{**TRAILER, "mass_kg": 3.0}, {**TRAILER, "name": "ahead", "hitch_x_m": 0.3}]},
+    {"wheel": [steered("coordinated", f"c{n}", x, y) for n, (x, y) in enumerate(
+        ((0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)))], "trailer": [TRAILER], "caster": [CASTER]},
+    {"body": [{**ARM, "hinge": "prescribed"}], "trailer": [{**TRAILER, "parent": "arm"}]},
+    {"body": [ARM], "trailer": [{**TRAILER, "parent": "arm"}]},
+    {"trailer": [TRAILER], "caster": [{**CASTER, "parent": "cart", "x_m": -0.2}]}],
+    ids=["two motors", "omni", "no wheels", "swerve", "prescribed arm", "free arm", "caster on a trailer"])
+def test_every_kind_of_tree_has_turns_and_growth_rates_that_the_core_confirms(vehicle: dict[str, Any]) -> None:
+    found = study(vehicle, curvatures_per_m=(0.3, -0.3, math.inf, -math.inf))
+    assert found.failures == [] and all(each.agrees for each in found.straight)
+    assert json.loads(json.dumps(found.words)) == found.words
+    unknown = [limb.hinge.name for limb in found.tree.limbs if body(found, limb.hinge.name).angle_rad is None]
+    assert unknown == (["arm", "cart"] if vehicle.get("body") == [ARM] else [])
+    assert found.turns[0].confirmed is (None if unknown else True)
+
+
+def test_a_car_with_its_centre_of_mass_over_its_axle_turns_on_the_spot() -> None:
+    wheels = [*two_wheels()["vehicle"]["wheel"], steered("coordinated", "l", 0.5, 0.2),
+              steered("coordinated", "r", 0.5, -0.2)]
+    turn = study({"wheel": wheels}, curvatures_per_m=(math.inf,)).turns[0]
+    assert turn.confirmed and turn.circles[0].angle_rad == pytest.approx(math.atan2(0.5, -0.2))
+
+
+def test_an_arm_on_a_spring_swings_as_fast_as_its_spring_and_inertia_say() -> None:
+    tables = two_wheels(body=[{**ARM, "hinge_x_m": 0.0, "stiffness_Nm": 3.0}])
+    tables["vehicle"] |= {"yaw_inertia_kgm2": 1e6, "mass_kg": 1e6}  # so that nothing but the arm moves
+    found = study_hinges(scene_with(tables), speeds_m_per_s=(0.5,))
+    swing = math.sqrt(3.0 / (0.1 + 1.0 * 0.2**2))
+    assert found.straight[0].eigenvalues_per_s[0] == pytest.approx(complex(0.0, swing), abs=1e-4)

@@ -23,12 +23,12 @@ TITLES = {"limits": "Tightest turns", "turns": "Steady turns", "straight": "Stra
 
 @dataclass(frozen=True)
 class SteadyTurn:
-    """One turn: all bodies on circles about one point."""
+    """One turn: all bodies on circles about one point. Where nothing sets an angle, those of its body are unknown."""
 
     asked: str
     curvature_per_m: float
     circles: tuple[BodyCircle, ...]
-    confirmed: bool | None  # by the core; None where there is no such turn
+    confirmed: bool | None  # by the core; None where there is no such turn, or an angle is unknown
 
     @property
     def radius_m(self) -> float:
@@ -101,7 +101,7 @@ def _curvature(given: float) -> float:
 
 def _turn(tree: Tree, vehicle: ArticulatedVehicle, asked: str, curvature: float) -> SteadyTurn:
     circles = tuple(tree.circles(tree.twist(curvature)))
-    exists = not any(each.problem or each.period for each in circles)
+    exists = not any(each.problem or each.period or math.isnan(each.radius_m) for each in circles)
     return SteadyTurn(asked, curvature, circles, _confirmed(tree, vehicle, curvature, circles) if exists else None)
 
 
@@ -162,6 +162,8 @@ def _turn_words(tree: Tree, turn: SteadyTurn) -> str:
             beyond = "" if each.within_stops else " (beyond its stop)"
             circle = "" if not math.isfinite(each.radius_m) else f" on a circle of {each.radius_m:.5g} m"
             pieces.append(f"{name} at {_degrees(each.angle_rad)}{beyond}{circle}")
+        else:
+            pieces.append(f"{name} at an angle that its wheels do not set")
     return f"With {turn.asked} ({path}): {'; '.join(pieces)}."
 
 
@@ -209,7 +211,7 @@ def hinged_numbers(study: HingedStudy) -> dict[str, Any]:
 
 def _turn_numbers(turn: SteadyTurn, names: Sequence[str]) -> dict[str, Any]:
     return {"asked": turn.asked, "curvature_per_m": turn.curvature_per_m, "radius_m": turn.radius_m,
-            "exists": turn.confirmed is not None, "confirmed": turn.confirmed,
+            "exists": not any(each.problem for each in turn.circles), "confirmed": turn.confirmed,
             "bodies": {name: _circle_numbers(each) for name, each in zip(names, turn.circles, strict=True)}}
 
 

@@ -150,14 +150,18 @@ def straight_motion(tree: Tree, vehicle: ArticulatedVehicle, speed_m_per_s: floa
         raise tree.scene.refusal_in_file(refused, f"straight motion at {speed_m_per_s:g} m/s") from None
     growth = tuple(None if each.growth is None else each.growth * speed_m_per_s for each in circles)
     by_core = tuple(None if each is None else motions.core_growth(k) for k, each in enumerate(growth))
-    eigenvalues = _settled(np.linalg.eigvals(matrix), [each for each in growth if each is not None])
+    eigenvalues = _settled(np.linalg.eigvals(matrix), [each for each in growth if each is not None],
+                           abs(speed_m_per_s) / tree.size_m)
     return StraightMotion(speed_m_per_s, growth, by_core, tuple(eigenvalues), held)
 
 
-def _settled(values: np.ndarray, growth: Sequence[float]) -> list[complex]:
-    """Eigenvalues, the largest real part first; those that are a repeated growth of hinges as their mean."""
+def _settled(values: np.ndarray, growth: Sequence[float], typical: float) -> list[complex]:
+    """Eigenvalues, the largest real part first; those that are a repeated growth of hinges as their mean.
+
+    What is far below the largest and below the typical one is 0.
+    """
     left, found = list(map(complex, values)), list[complex]()
-    size = max([abs(z) for z in left], default=0.0)
+    size = max([abs(z) for z in left] + [typical])
     for value in dict.fromkeys(round(each, 9) for each in growth):
         count = sum(abs(each - value) < 1e-8 for each in growth)
         near = sorted(left, key=lambda z: abs(z - value))[:count]  # noqa: B023
