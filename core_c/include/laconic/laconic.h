@@ -50,10 +50,11 @@
  *          motors           a DC motor without inductance; vehicle.drive adds supply and limits, and
  *                           ground.axle_friction_Nm dry friction. Any other torque is given as axle_torque_Nm, with
  *                           c1 = c2 = 0 where it replaces the motor's.
- *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
- *                           fixed wheel is not a swivel caster: it does not swivel.) articulated.h has casters that do.
- *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. Wheels that steer
- *                           while the vehicle moves, and trailers: articulated.h.
+ *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. A single
+ *                           fixed wheel does not swivel. articulated.h has casters that swivel.
+ *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. articulated.h has
+ *                           wheels that steer while the vehicle moves, one by one or coordinated.
+ *          trailers         articulated.h has trailers, centre hinges and other bodies on hinges.
  *          skid steering    on ideal ground fixed wheels on more than one axle line cannot yaw: give the ground its
  *                           friction, or one axle line in the middle with the others as supports. */
 #ifndef LACONIC_H

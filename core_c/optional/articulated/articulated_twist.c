@@ -22,8 +22,9 @@ static laconic_status check_against_wheels(const laconic_articulated_model *m, c
     for (int k = 0; k < 2; k++)
         for (int32_t i = 0; i < m->held_count; i++) {
             const vector t = drive->twist[k], row = m->held[i];
-            const real whole =
-                (magnitude(row.x) + magnitude(row.y)) * (magnitude(t.x) + magnitude(t.y)) + magnitude(row.z * t.z);
+            const real whole = (magnitude(row.x) + magnitude(row.y)) *
+                                   (magnitude(t.x) + magnitude(t.y) + m->length_m * magnitude(t.z)) +
+                               magnitude(row.z * t.z); /* row.z and t.x may both be roundings of 0 */
             const real off = magnitude(dot(row, t));
             if (off > R(10) * LACONIC_RANK_TOLERANCE * whole)
                 return refuse(why, LACONIC_TWIST_AGAINST_WHEELS,

@@ -139,7 +139,7 @@ def elsewhere(tmp_path: Path) -> dict[str, list[str]]:
     log = tmp_path / "log.csv"
     log.write_text("t_s,x_m,y_m\n0,0,0\n1,1,0\n", encoding="utf-8")
     can = ["--interface", "virtual", "--channel", "none"]
-    return {"analyse": ["SCENE"], "derive": ["SCENE"], "trim": ["SCENE"],
+    return {"derive": ["SCENE"], "trim": ["SCENE"],
             "rig": ["SCENE", *can, "--lockstep"], "play": ["SCENE", *can, "--drives", "canopen"],
             "replay": [str(log), "SCENE"], "identify": [str(log), "--scene", "SCENE", "-o", str(tmp_path / "f.toml")],
             "optimise": ["SCENE", "--free", "vehicle.mass_kg=1:2", "--goal", "min speed"],
@@ -152,10 +152,10 @@ def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> 
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu"} and takes - with_hinges == {*elsewhere(tmp_path)}
+    assert with_hinges == {"simulate", "fmu", "analyse"} and takes - with_hinges == {*elsewhere(tmp_path)}
 
 
-@pytest.mark.parametrize("command", ["analyse", "derive", "trim", "rig", "play", "replay", "identify",
+@pytest.mark.parametrize("command", ["derive", "trim", "rig", "play", "replay", "identify",
                                      "optimise", "sweep", "report", "demo", "ros2"])
 @pytest.mark.parametrize("name", ["f1tenth", "mir_like", "tugger_train", "wheel_loader"])
 def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, name: str, tmp_path: Path,

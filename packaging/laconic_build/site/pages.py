@@ -15,8 +15,8 @@ MADE_LATER = re.compile(r"^\.|^__pycache__$|\.egg-info$|^(build|dist)\b")  # wha
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 GROUPS = {  # the parts of the manual, in the order in which a reader needs them
     "Start": ("tutorial", "how-to"),
-    "Guides": ("scenes", "import", "sensors", "fmu-importers", "fmu", "fmu-network", "rig", "rig-ports",
-               "play", "play-drives", "ros2", "logs", "control", "c", "python", "sweep", "batch", "page"),
+    "Guides": ("scenes", "articulated", "import", "sensors", "fmu-importers", "fmu", "fmu-network", "rig",
+               "rig-ports", "play", "play-drives", "ros2", "logs", "control", "c", "python", "sweep", "batch", "page"),
     "Reference": ("reference-commands", "reference-scene", "signals", "reference-c", "reference-python",
                   "reference-fmi", "wire", "glossary"),
     "Theory": ("paper", "integrators", "friction", "accuracy"),

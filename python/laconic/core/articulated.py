@@ -313,14 +313,24 @@ class ArticulatedPlant(OwnMemory):
             found, self.vehicle.model, self.c, self._input(row), loads, why), why)
         return ArticulatedReactions(**self._values(found, ArticulatedReactions))
 
-    def acceleration(self, inputs: Any = None) -> np.ndarray:
-        """Acceleration of the centre of mass of body 0 in body axes, shape (2,) [m/s²], with inputs as for `run`."""
+    def rates(self, inputs: Any = None) -> tuple[np.ndarray, np.ndarray]:
+        """Twists of all bodies and their rates of change, each (H + 1, 3), with inputs as for `run`.
+
+        A row has the velocity of the body's origin in its own axes and its yaw rate; the carriage's origin, in the
+        first row, is its centre of mass."""
         row = inputs if isinstance(inputs, np.ndarray) else self.vehicle.input_row(inputs)
         rates, why = self.core.ffi.new("laconic_articulated_rates *"), self.core.why()
         self.core.check(self.core.lib.laconic_articulated_rates_of(
             rates, self.vehicle.model, self.c, self._input(row), why), why)
-        x, v = rates.twist_rate[0], rates.twist[0]
-        return np.array([x.x - v.z * v.y, x.y + v.z * v.x])
+        bodies = range(self.vehicle.body_count + 1)
+        twist, rate = (np.array([[each[b].x, each[b].y, each[b].z] for b in bodies])
+                       for each in (rates.twist, rates.twist_rate))
+        return twist, rate
+
+    def acceleration(self, inputs: Any = None) -> np.ndarray:
+        """Acceleration of the centre of mass of body 0 in body axes, shape (2,) [m/s²], with inputs as for `run`."""
+        twist, rate = (each[0] for each in self.rates(inputs))
+        return np.array([rate[0] - twist[2] * twist[1], rate[1] + twist[2] * twist[0]])
 
     def _values(self, found: Any, kind: type) -> dict[str, Any]:
         """The members of a struct: arrays cut to the wheels or hinges that there are."""

@@ -195,6 +195,24 @@ static void a_twist_that_makes_the_rear_axle_slide_is_refused(void) {
     ASSERT_STATUS(LACONIC_TWIST_AGAINST_WHEELS, laconic_articulated_step(&m, &i, &s, &in, &end, &why));
 }
 
+/* The centre of mass is on the axle line, so that its velocity and the axle's lever are 0 but for rounding. */
+static void coordinated_wheels_turn_a_car_on_the_middle_of_its_axle(void) {
+    laconic_articulated_vehicle car = car_with_trailer();
+    car.base.com_x_m = car.base.com_y_m = 0;
+    const laconic_articulated_model m = hinged_model(car);
+    laconic_articulated_start start = start_at(0, 0, 0);
+    start.yaw_rate_rad_per_s = REAL(0.5);
+    for (int side = -1; side <= 1; side += 2) {
+        const laconic_articulated_input in = twist_of(REAL(1e-14), 0, side);
+        laconic_articulated_state s = hinged_state(&m, &start, &in);
+        const laconic_articulated_integrator i = hinged_integrator(&m, LACONIC_ARTICULATED_RK4, 0.01);
+        ASSERT_TAKEN(laconic_articulated_step(&m, &i, &s, &in, &in, &refusal));
+        const laconic_articulated_motion now = motion_of(&m, &s);
+        TEST_ASSERT_TRUE(now.yaw_rate_rad_per_s > REAL(0.1));
+        ASSERT_NEAR(EITHER(1e-12, 1e-6), 0, fabs((double)now.x_m) + fabs((double)now.y_m));
+    }
+}
+
 /* A ramp of values alone: each step jumps to its own T' and goes on. */
 static void ramps_need_values_alone(void) {
     const laconic_articulated_model m = hinged_model(swerve(LACONIC_HINGE_COORDINATED, 4));
@@ -274,6 +292,7 @@ int main(void) {
     RUN_TEST(a_twist_without_direction_is_refused);
     RUN_TEST(a_twist_that_jumps_is_refused);
     RUN_TEST(a_twist_that_makes_the_rear_axle_slide_is_refused);
+    RUN_TEST(coordinated_wheels_turn_a_car_on_the_middle_of_its_axle);
     RUN_TEST(ramps_need_values_alone);
     RUN_TEST(coordinated_angles_count_turns);
     RUN_TEST(a_copied_state_repeats_the_motion);

@@ -79,7 +79,9 @@ def analyse(scene: Scene, parts: Sequence[str] = PARTS, *, at_s: float = 0.0) ->
     `at_s`: the inputs of this instant are held [s]. What a simulation with the core does not confirm is in `failures`.
     Raises BadInput for an unknown part, and for a scene whose ground or drive has no such motions.
     """
-    check_scene(scene)
+    if check_scene(scene).has_hinges:
+        raise BadInput(f"{scene.path}: {scene.hinges[0].place}: laconic.analyse has the parts of vehicles without "
+                       "hinges; use study_hinges of laconic.tools.analyse.hinged")
     if (given := several(parts)) is None:
         what = "one text" if isinstance(parts, str) else "no list"
         raise BadInput(f"parts: {shown(parts)} is {what}; give a list, such as [{shown(GEOMETRY)}]")
