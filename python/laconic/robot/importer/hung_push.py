@@ -28,6 +28,8 @@ STEER_RAD, OF_STOP = 0.3, 0.7
 LONGEST_S, SHORTEST_S = 40.0, 8.0
 ROUNDS, GOOD, MOST = 4, 0.003, 4.0
 STEP_S = 0.01
+TURN_S = 2.0  # from the end of the ramp to that of the pulse that turns
+LEAD_M, BRIEF_S = 1e-3, 3.0  # a turn that its own mass tightens is short
 ALONG = 0.5  # of a driven wheel's way that must lie ahead
 
 Tables = list[dict[str, Any]]
@@ -53,6 +55,16 @@ class Plan:
     def speed_m_per_s(self) -> float:
         """That the ramp reaches."""
         return float(f"{max(SLOW_M_PER_S, PER_METRE * self.size_m):.2g}")
+
+    @property
+    def yaw_rate_rad_per_s(self) -> float:
+        """Of a turn that torques make: a circle three times as wide as the robot."""
+        return self.speed_m_per_s / max(1.5 * self.size_m, 0.1)
+
+    @property
+    def mass_kg(self) -> float:
+        """Of all bodies."""
+        return self.carriage.mass_kg + sum(body.whole.mass_kg for body in self.bodies)
 
     @property
     def ramp_s(self) -> float:
@@ -85,21 +97,20 @@ def drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[fl
     if not ahead:
         return Driven(steering, SHORTEST_S, steer_words, "nothing that the file drives rolls ahead; no torques are given")
     differ = {} if steering else _differential(plan)
-    reach_s = plan.ramp_s + 1.0
-    ahead, speed = _corrected(plan, data, where, ahead, {}, reach_s, plan.speed_m_per_s, 0)
+    data = {**data, "input": steering}
+    ahead, speed = _corrected(plan, data, where, ahead, {}, plan.ramp_s, plan.speed_m_per_s, 0)
     if speed is None:
         return Driven([], SHORTEST_S, (), "torques that roll the driven wheels ahead do not move the robot ahead; no "
                                           "inputs are given")
-    turn_rate = plan.speed_m_per_s / max(1.5 * plan.size_m, 0.1)
     turned_at = None
     if differ:
-        differ, turned_at = _corrected(plan, data, where, differ, ahead, reach_s + 2.0 * RAMP_S, turn_rate, 1)
+        differ, turned_at = _corrected(plan, data, where, differ, ahead, plan.ramp_s + TURN_S, plan.yaw_rate_rad_per_s, 1)
         differ = differ if turned_at is not None else {}
     inputs = _tables(plan, ahead, differ, rounded)
     words = (f"these torques roll it ahead to {speed:.2g} m/s in {plan.ramp_s:.3g} s",)
     if differ:
         words = (f"{words[0]}, and then turn it to the left",)
-        ends_s = 2.0 * math.pi / turn_rate + plan.ramp_s
+        ends_s = plan.ramp_s + TURN_S + (2.0 * math.pi / plan.yaw_rate_rad_per_s if _lead(plan) > -LEAD_M else BRIEF_S)
     duration = float(math.ceil(min(max(ends_s, SHORTEST_S), LONGEST_S)))
     return Driven([*inputs, *steering], duration, (*words, *steer_words))
 
@@ -129,8 +140,7 @@ def _torques(plan: Plan) -> dict[int, tuple[float, float]]:
     driven = _driven(plan)
     if not driven:
         return {}
-    mass = plan.carriage.mass_kg + sum(body.whole.mass_kg for body in plan.bodies)
-    mass += sum(each.wheel.inertia_kgm2 / each.wheel.radius_m**2 for each in plan.placed)
+    mass = plan.mass_kg + sum(each.wheel.inertia_kgm2 / each.wheel.radius_m**2 for each in plan.placed)
     moment = plan.carriage.mass_kg * plan.across(plan.carriage.com_m)
     moment += sum(body.whole.mass_kg * plan.across(body.hinge_m) for body in plan.bodies)
     rows = np.array([[way @ plan.ahead for _, _, way in driven],
@@ -156,11 +166,20 @@ def _differential(plan: Plan) -> dict[int, tuple[float, float]]:
     for body in plan.bodies:
         off = body.hinge_m - plan.carriage.com_m[:2]
         inertia += float(body.whole.inertia_kgm2[2, 2]) + body.whole.mass_kg * float(off @ off)
-    rate = plan.speed_m_per_s / max(1.5 * plan.size_m, 0.1)
-    forces = np.linalg.lstsq(np.array([pushes, -arms]), np.array([0.0, inertia * rate / RAMP_S]), rcond=1e-9)[0]
-    return {at: (float(force) * each.wheel.radius_m, -each.wheel.joint.damping_Nms * rate
-                 * plan.across(each.wheel.hub_m) * float(way @ plan.ahead) / each.wheel.radius_m)
-            for force, (at, each, way) in zip(forces, driven, strict=True)}
+    rate, swing = plan.yaw_rate_rad_per_s, plan.mass_kg * _lead(plan)
+    wanted = np.array([[0.0, inertia * rate / RAMP_S], [-swing * rate**2, swing * rate * plan.speed_m_per_s]]).T
+    forces = np.linalg.lstsq(np.array([pushes, -arms]), wanted, rcond=1e-9)[0]
+    return {at: (float(push) * each.wheel.radius_m, float(hold) * each.wheel.radius_m - each.wheel.joint.damping_Nms
+                 * rate * plan.across(each.wheel.hub_m) * float(way @ plan.ahead) / each.wheel.radius_m)
+            for (push, hold), (at, each, way) in zip(forces, driven, strict=True)}
+
+
+def _lead(plan: Plan) -> float:
+    """How far the centre of mass lies ahead of the plain wheels: in a turn it pulls them straight, or else round."""
+    axle = _axle(plan)
+    if axle is None:
+        return 0.0
+    return (plan.along(plan.carriage.com_m) - plan.along(axle)) * plan.carriage.mass_kg / plan.mass_kg
 
 
 def _ramp(plan: Plan, push: float, hold: float) -> tuple[list[float], list[float]]:
@@ -172,9 +191,9 @@ def _ramp(plan: Plan, push: float, hold: float) -> tuple[list[float], list[float
 
 def _pulse(plan: Plan, push: float, hold: float) -> tuple[list[float], list[float]]:
     """The same of what turns the robot, after the ramp."""
-    at = plan.ramp_s + 1.0
+    at = plan.ramp_s + TURN_S - 2.0 * RAMP_S
     return ([at, at + 0.5 * RAMP_S, at + RAMP_S, at + 1.5 * RAMP_S],
-            [0.0, push + 0.25 * hold, push + 0.75 * hold, hold])
+            [0.0, push + 0.125 * hold, push + 0.875 * hold, hold])
 
 
 def _tables(plan: Plan, ahead: Mapping[int, tuple[float, float]], differ: Mapping[int, tuple[float, float]],
@@ -219,7 +238,7 @@ def _reached(plan: Plan, data: Mapping[str, Any], where: Any, inputs: Tables, un
 
     until_s = math.ceil(until_s / STEP_S) * STEP_S
     tables = {**data, "input": inputs, "run": {"duration_s": round(until_s, 6), "step_s": STEP_S}}
-    tables["input"] = [_within(each, until_s) for each in inputs]
+    tables["input"] = [_within(each, until_s) for each in (*inputs, *data["input"])]
     try:
         scene = scene_of(Table(where, "", _copied(tables)))
         columns = simulate(scene, ("velocity_body_m_per_s", "yaw_rate_rad_per_s")).columns
@@ -233,6 +252,8 @@ def _reached(plan: Plan, data: Mapping[str, Any], where: Any, inputs: Tables, un
 def _within(table: dict[str, Any], until_s: float) -> dict[str, Any]:
     """A table without the instants that a shorter run never comes to."""
     count = sum(t <= until_s for t in table["t_s"]) + 1
+    if count == 1:  # none is reached: it has its first value throughout
+        return {**table, "t_s": [0.0], "value": table["value"][:1]}
     return {**table, "t_s": table["t_s"][:count], "value": table["value"][:count]}
 
 
