@@ -27,8 +27,8 @@ from laconic.errors import BadInput
               help="Moment of inertia about the axle, of all wheels or of one.")
 @click.option("--friction", type=float, metavar="MU", help="Ground with this friction coefficient: wheels may slip.")
 @click.option("--hinges/--no-hinges", "hinges", default=None,
-              help="Steered wheels, casters and trailers turn on hinges; or steered wheels and casters are supports. The "
-                   "usual is --hinges, and --no-hinges with --wheel.")
+              help="Steered wheels, casters and trailers turn on hinges; or steered wheels and casters are supports. "
+                   "The usual is --hinges, and --no-hinges with --wheel.")
 @click.option("--model", metavar="NAME", help="Name of one of several models in the file (SDF, MJCF).")
 @click.option("--set", "arguments", multiple=True, metavar="NAME:=VALUE", help="An argument of the xacro file.")
 @click.option("--package", "packages", multiple=True, metavar="NAME=FOLDER",
@@ -62,7 +62,8 @@ def command(robot: Path, out: Path, wheels: tuple[str, ...], rollers: tuple[str,
                                "assumptions": found.assumptions, "remarks": found.remarks,
                                "standing": found.standing.as_json()}, indent=1, ensure_ascii=False))
         return
-    for line in (*found.wheels, *found.hinges, *found.supports, found.standing.in_words(), *found.assumptions, *found.remarks):
+    for line in (*found.wheels, *found.hinges, *found.supports, found.standing.in_words(), *found.assumptions,
+                 *found.remarks):
         click.echo(line, err=is_stdout(out))
 
 

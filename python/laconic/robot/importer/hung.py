@@ -260,5 +260,3 @@ def is_on_hinge(robot: Robot, link: str, bodies: Sequence[HungBody]) -> bool:
     hinges = [body.joint for body in bodies]
     joint = robot.joint_above.get(link)
     return joint is not None and (joint in hinges or any(each in hinges for each in robot.chain(joint)))
-
-

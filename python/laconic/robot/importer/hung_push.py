@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from laconic.errors import BadInput, Refused
-from laconic.robot.importer.hung import CARRIAGE, COORDINATED, FREE, PRESCRIBED, HungBody, rolling_of, turned
+from laconic.robot.importer.hung import CARRIAGE, COORDINATED, FREE, PRESCRIBED, HungBody, rolling_of
 from laconic.robot.importer.hung_scene import Placed, rate_of
 from laconic.robot.importer.rigid_body import RigidBody
-from laconic.scene import Scene, scene_of
-from laconic.scene.scene_text import Comments
+from laconic.scene import scene_of
 from laconic.scene.table import Table
 
 ACCELERATION_M_PER_S2 = 0.3
@@ -95,7 +94,8 @@ def drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[fl
     steering, steer_words, ends_s = _steering(plan, data["vehicle"], rounded)
     ahead = _torques(plan)
     if not ahead:
-        return Driven(steering, SHORTEST_S, steer_words, "nothing that the file drives rolls ahead; no torques are given")
+        return Driven(steering, SHORTEST_S, steer_words, "nothing that the file drives rolls ahead; no torques are "
+                                                         "given")
     differ = {} if steering else _differential(plan)
     data = {**data, "input": steering}
     ahead, speed = _corrected(plan, data, where, ahead, {}, plan.ramp_s, plan.speed_m_per_s, 0)
@@ -104,7 +104,8 @@ def drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[fl
                                           "inputs are given")
     turned_at = None
     if differ:
-        differ, turned_at = _corrected(plan, data, where, differ, ahead, plan.ramp_s + TURN_S, plan.yaw_rate_rad_per_s, 1)
+        differ, turned_at = _corrected(plan, data, where, differ, ahead, plan.ramp_s + TURN_S,
+                                       plan.yaw_rate_rad_per_s, 1)
         differ = differ if turned_at is not None else {}
     inputs = _tables(plan, ahead, differ, rounded)
     words = (f"these torques roll it ahead to {speed:.2g} m/s in {plan.ramp_s:.3g} s",)
@@ -145,13 +146,15 @@ def _torques(plan: Plan) -> dict[int, tuple[float, float]]:
     moment += sum(body.whole.mass_kg * plan.across(body.hinge_m) for body in plan.bodies)
     rows = np.array([[way @ plan.ahead for _, _, way in driven],
                      [(way @ plan.ahead) * plan.across(each.wheel.hub_m) for _, each, way in driven]])
-    wanted = ACCELERATION_M_PER_S2 * np.array([mass, moment])
+    drag = [(each.wheel.joint.damping_Nms * plan.speed_m_per_s / each.wheel.radius_m**2, plan.across(each.wheel.hub_m))
+            for each in plan.placed if each.body is None or each.body.form in ("wheel", "body")]
+    wanted = np.array([[ACCELERATION_M_PER_S2 * mass, sum(force for force, _ in drag)],
+                       [ACCELERATION_M_PER_S2 * moment, sum(force * across for force, across in drag)]])
     forces = np.linalg.lstsq(rows, wanted, rcond=1e-9)[0]
-    if np.abs(rows @ forces - wanted)[0] > 1e-6 * wanted[0]:  # one wheel beside the middle, which others keep straight
+    if np.abs(rows @ forces - wanted)[0, 0] > 1e-6 * wanted[0, 0]:  # a wheel beside the middle; others keep it straight
         forces = np.linalg.lstsq(rows[:1], wanted[:1], rcond=1e-9)[0]
-    return {at: (float(force) * each.wheel.radius_m,
-                 each.wheel.joint.damping_Nms * plan.speed_m_per_s * float(way @ plan.ahead) / each.wheel.radius_m)
-            for force, (at, each, way) in zip(forces, driven, strict=True)}
+    return {at: (float(push) * each.wheel.radius_m, float(hold) * each.wheel.radius_m)
+            for (push, hold), (at, each, _) in zip(forces, driven, strict=True)}
 
 
 def _differential(plan: Plan) -> dict[int, tuple[float, float]]:

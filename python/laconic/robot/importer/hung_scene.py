@@ -1,5 +1,5 @@
-"""The tables of a scene for bodies on hinges: `steered` in [[vehicle.wheel]], and [[vehicle.caster]], [[vehicle.trailer]],
-[[vehicle.body]]."""
+"""The tables of a scene for bodies on hinges: `steered` in [[vehicle.wheel]], and [[vehicle.caster]],
+[[vehicle.trailer]], [[vehicle.body]]."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.hung import CARRIAGE, COORDINATED, FREE, PRESCRIBED, HungBody, turned
+from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import Joint
 from laconic.robot.importer.wheels import FoundWheel
 from laconic.scene.scene_text import Comments
@@ -64,10 +65,7 @@ class HungTables:
     def wheel(self, table: dict[str, Any], wheel: FoundWheel, body: HungBody, where: tuple[str, ...]
               ) -> dict[str, Any]:
         """One [[vehicle.wheel]] that a hinge carries; `table` as the carriage has it."""
-        if "motor_damping_Nms" in table and not self.is_driven(wheel, body):
-            self.remarks.append(f"damping of {wheel.name}, which nothing drives, is left out")
-            table.pop("motor_damping_Nms")
-        if not self.is_driven(wheel, body):
+        if not self.is_driven(wheel, body) and "motor_damping_Nms" not in table:  # damping is that of a motor
             table["driven"] = False
             self.comments.pop((*where, "driven"), None)
         else:
@@ -127,12 +125,11 @@ class HungTables:
         for key, stop in zip(("stop_low_deg", "stop_high_deg"), body.stops_rad, strict=True):
             if math.isfinite(stop):
                 found[key] = self.rounded(math.degrees(stop))
-        if body.kind == PRESCRIBED or math.isfinite(body.joint.speed_limit_rad_per_s):
-            if body.kind != FREE:
-                found["rate_limit_rad_per_s"] = rate_of(body)
-                self.comments[(*where, "rate_limit_rad_per_s")] = (
-                    "of the joint" if math.isfinite(body.joint.speed_limit_rad_per_s) else
-                    "assumption: the file has no speed limit of this joint")
+        if (body.kind == PRESCRIBED or math.isfinite(body.joint.speed_limit_rad_per_s)) and body.kind != FREE:
+            found["rate_limit_rad_per_s"] = rate_of(body)
+            self.comments[(*where, "rate_limit_rad_per_s")] = (
+                "of the joint" if math.isfinite(body.joint.speed_limit_rad_per_s) else
+                "assumption: the file has no speed limit of this joint")
         if body.start_rad:
             found["start_angle_deg"] = self.rounded(math.degrees(body.start_rad))
             self.comments[(*where, "start_angle_deg")] = "as the file places it"
@@ -198,8 +195,8 @@ class HungTables:
         for body in free:
             aside = float(body.local(body.whole.com_m)[1]) if body.whole.mass_kg > 0.0 else 0.0
             if abs(aside) > 1e-3:
-                self.remarks.append(f"the centre of mass of {body.name} lies {1e3 * abs(aside):.3g} mm beside the swivel "
-                                    "axis and counts as behind it; its mass stays as it is")
+                self.remarks.append(f"the centre of mass of {body.name} lies {1e3 * abs(aside):.3g} mm beside the "
+                                    "swivel axis and counts as behind it; its mass stays as it is")
         if rubbing := [f"{body.joint.name} ({body.joint.friction_Nm:g} N·m)" for body in self.bodies
                        if body.joint.friction_Nm > 0.0]:
             self.remarks.append(f"dry friction of hinges is left out: {', '.join(rubbing)}")
@@ -217,12 +214,12 @@ class HungTables:
             self.remarks.append(f"hinge {body.name} is 0 where its wheel rolls straight ahead, and starts so; joint "
                                 f"{body.joint.name} is 0 at {math.degrees(zero):.3g}°")
         if body.kind != FREE and body.sense < 0.0:
-            self.remarks.append(f"hinge {body.name} turns to the left, joint {body.joint.name} to the right: their signs "
-                                "differ")
+            self.remarks.append(f"hinge {body.name} turns to the left, joint {body.joint.name} to the right: their "
+                                "signs differ")
 
     def words(self) -> list[str]:
         """A line for each hinge."""
-        found = []
+        found: list[str] = []
         for body in self.bodies:
             x, y = self.hinge_place(body)
             kind = "swivels freely" if body.kind == FREE else body.kind
@@ -230,7 +227,8 @@ class HungTables:
             if body.form == "caster" and len(body.wheels) == 2:
                 what += " with two wheels"
             on = "" if body.parent == CARRIAGE else f" of {body.parent}"
-            found.append(f"hinge {len(found) + 1}: {body.name}, {what}, {kind}, at ({x:.4g}, {y:.4g}) m{on}; {body.why}")
+            found.append(f"hinge {len(found) + 1}: {body.name}, {what}, {kind}, at ({x:.4g}, {y:.4g}) m{on}; "
+                         f"{body.why}")
         return found
 
 
@@ -249,7 +247,7 @@ def rate_of(body: HungBody) -> float:
     return float(f"{limit:.9g}") if math.isfinite(limit) else RATE_RAD_PER_S
 
 
-def rigid_table(vehicle: Mapping[str, Any], placed: Sequence[Placed], mass_kg: float, com_m: Sequence[float]
+def rigid_table(vehicle: Mapping[str, Any], placed: Sequence[Placed], mass_kg: float, com_m: Array
                 ) -> dict[str, Any]:
     """The vehicle as it stands in the file's zero position, on wheels that carry a load: for its loads at rest."""
     wheels = [{**vehicle["wheel"][at], "kind": "fixed", "x_m": float(each.wheel.hub_m[0]),

@@ -22,7 +22,8 @@ from laconic.scene.table import Table
 
 IDEAL = ("the ground is ideal, as wheels on hinges do not slip; --no-hinges makes casters and steered wheels supports, "
          "for ground with friction and for commands that do not take hinges")
-HELD = "give --no-hinges for supports in the place of casters and steered wheels, or --wheel JOINT for the wheels that count"
+HELD = ("give --no-hinges for supports in the place of casters and steered wheels, or --wheel JOINT for the wheels that "
+        "count")
 
 
 class HungWriter(Writer):
@@ -39,7 +40,8 @@ class HungWriter(Writer):
         self.carriage = add_up(links_of_carriage(self.robot, self.bodies))
         self.tables = HungTables(self.bodies, self.idle, bool(self.ground.wheels), self.comments, _rounded)
         self.placed = self.tables.placed(self.ground.wheels)
-        self.remarks = [*self.robot.remarks, *self.ground.remarks, *remarks, *untouching, *self.doubts(self.every), IDEAL]
+        self.remarks = [*self.robot.remarks, *self.ground.remarks, *remarks, *untouching, *self.doubts(self.every),
+                        IDEAL]
 
     def imported(self) -> Imported:
         """All tables, checked by the core."""
@@ -48,7 +50,7 @@ class HungWriter(Writer):
         self.remarks += self.tables.remarks
         if self.answers.friction_coefficient is not None:
             data["vehicle"]["friction_coefficient"] = float(self.answers.friction_coefficient)
-            self.comments["vehicle", "friction_coefficient"] = "said with --friction; by it the margin to slip is judged"
+            self.comments["vehicle", "friction_coefficient"] = "said with --friction, for the margin to slip"
             self.remarks.append("--friction: wheels on hinges do not slip; the run has the margin to slip instead")
         self.remark_friction()
         scene = self.checked(data | {"run": {"duration_s": SHORTEST_S, "step_s": STEP_S}})
@@ -73,17 +75,13 @@ class HungWriter(Writer):
             self.comments["vehicle", "support", str(index), "x_m"] = f"{each.why}; carries {standing.share(load_N)}"
         comments = {where: in_one_line(why) for where, why in self.comments.items()}
         text = "\n".join([*map(in_one_line, self.head()), *lines_of(data, comments)]) + "\n"
-        words, hinges, remarks, assumptions, supports = (tuple(map(in_one_line, each)) for each in (
+        lines, hinges, remarks, assumptions, supports = (tuple(map(in_one_line, each)) for each in (
             self.words(), self.tables.words(), self.remarks, assumed, self.words_of_supports(standing)))
-        return Imported(self.robot.name, text, words, assumptions, remarks, supports, standing, hinges)
+        return Imported(self.robot.name, text, lines, assumptions, remarks, supports, standing, hinges)
 
     def vehicle(self) -> dict[str, Any]:
         """`[vehicle]` is the carriage alone; then wheels, bodies, supports."""
         wheels = [self.wheel(i, w, k) for i, (w, k) in enumerate(zip(self.ground.wheels, self.kinds, strict=True))]
-        for table, wheel in zip(wheels, self.ground.wheels, strict=True):
-            if wheel.joint in self.idle and table.pop("motor_damping_Nms", None):
-                table["driven"] = False
-                self.remarks.append(f"damping of {wheel.name}, which nothing drives, is left out")
         for wheel, body in self.tables.extra_wheels():
             where = ("vehicle", "wheel", str(len(wheels)))
             table = self.wheel(len(wheels), wheel, Kind("fixed", None, ""))
@@ -113,15 +111,16 @@ class HungWriter(Writer):
         super().totals()  # which checks the whole
         own = self.carriage
         if own.mass_kg <= 0.0:
-            raise BadInput(f"{self.robot.path}: all mass hangs on hinges, and the base {self.robot.base} has none; give "
-                           f"its link an <inertial>; or {HELD}")
+            raise BadInput(f"{self.robot.path}: all mass hangs on hinges, and the base {self.robot.base} has none; "
+                           f"give its link an <inertial>; or {HELD}")
         yaw = float(own.inertia_kgm2[2, 2])
         if yaw <= 0.0:
             raise BadInput(f"{self.robot.path}: the yaw inertia of the base without what hangs on hinges is {yaw:g} "
                            "kg·m²; give its links' <inertia>")
         count = sum(link.mass_kg > 0.0 for link in links_of_carriage(self.robot, self.bodies))
         without = "without what hangs on hinges"
-        self.comments["vehicle", "mass_kg"] = f"sum of {count} links, {without}" if count > 1 else f"of one link, {without}"
+        of_which = f"sum of {count} links" if count > 1 else "of one link"
+        self.comments["vehicle", "mass_kg"] = f"{of_which}, {without}"
         self.comments["vehicle", "yaw_inertia_kgm2"] = "of these links about their common centre of mass"
         return {"mass_kg": _rounded(own.mass_kg), "yaw_inertia_kgm2": _rounded(yaw), "com_x_m": _rounded(own.com_m[0]),
                 "com_y_m": _rounded(own.com_m[1]),
@@ -164,5 +163,3 @@ class HungWriter(Writer):
             found.append(f"wheel {len(found) + 1}: {each.wheel.name}, on hinge {body.name}{drives}, radius "
                          f"{each.wheel.radius_m:.4g} m at ({x:.4g}, {y:.4g}) m")
         return found
-
-
