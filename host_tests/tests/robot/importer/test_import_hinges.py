@@ -157,6 +157,35 @@ def test_trailers_hang_behind_one_another(tmp_path: Path) -> None:
         -(math.atan(0.2 / radius) + math.atan(0.6 / axle)), abs=0.01)
 
 
+def test_tandem_axles_turn_about_their_middle(tmp_path: Path) -> None:
+    second = wheel("t_left_2", "t", "-0.8 0.15 -0.05") + wheel("t_right_2", "t", "-0.8 -0.15 -0.05")
+    rear = wheel("left_2", "base", "-0.1 0.2 -0.05") + wheel("right_2", "base", "-0.1 -0.2 -0.05")
+    text = robot(base(0.1), REAR, rear, swivel("front", 0.5, 0.0), cart("t", "base", -0.3), second,
+                 control(("front_turn",), ROLL))
+    found, scene = imported(tmp_path, text)
+    assert sum("2 parallel axles of" in each for each in found.remarks) == 2
+    assert [each["x_m"] for each in scene.vehicle["wheel"]] == pytest.approx([-0.05] * 4 + [0.0] + [-0.7] * 4)
+    assert end_of(scene)["heading_rad"] > 3.0
+
+
+def test_a_caster_without_inertia_is_one_of_mass_0(tmp_path: Path) -> None:
+    shape = ('<collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.05" length="0.02"/></geometry>'
+             "</collision>")
+    caster = (link("fork") + joint("turn", "continuous", "base", "fork", "0.3 0 0", axis="0 0 1") + link("roll", shape)
+              + joint("caster", "continuous", "fork", "roll", "-0.03 0 -0.05"))
+    _, scene = imported(tmp_path, robot(base(0.1), REAR, caster, control((), ROLL)))
+    assert scene.vehicle["body"][0]["mass_kg"] == 0.0
+    assert end_of(scene)["heading_rad"] > 3.0
+
+
+def test_a_caster_whose_wheel_has_no_friction_slides_whatever_its_fork_does(tmp_path: Path) -> None:
+    slippery = '<gazebo reference="front_link"><mu1>0</mu1><mu2>0</mu2></gazebo>'
+    found, scene = imported(tmp_path, robot(base(0.1), REAR, swivel("front", 0.3, 0.0, trail=0.04), slippery,
+                                            control((), ROLL)))
+    assert not scene.has_hinges and len(scene.vehicle["support"]) == 1
+    assert any("front slides without drag, as its friction is 0 in the file" in each for each in found.assumptions)
+
+
 def test_a_ball_as_hitch_and_wheels_beyond_it_are_a_trailer(tmp_path: Path) -> None:
     sides = (("l", 0.15), ("r", -0.15))
     more = """<body name="cart" pos="-0.2 0 0"><joint name="hitch" type="ball"/><geom type="box" size=".1 .1 .02"

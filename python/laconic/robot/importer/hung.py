@@ -20,7 +20,7 @@ from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import BALL, Joint, Link, Robot
 from laconic.robot.importer.steering import FULL_RAD, NEAR, foot_of, has_no_trail, swivels, turntables
 from laconic.robot.importer.wheels import FoundWheel, Ground
-from laconic.scene.axle_lines import WITHIN_RAD, Line, common_line
+from laconic.scene.axle_lines import WITHIN_RAD, Line, are_parallel, common_line
 
 FREE, PRESCRIBED, COORDINATED = "free", "prescribed", "coordinated"
 SAME, SAME_M = 1e-3, 1e-3  # of radii and inertias; of distances
@@ -116,6 +116,23 @@ def ahead_of(ground: Ground) -> Array:
     return np.asarray(-ahead if max(ahead, key=abs) < 0.0 else ahead)
 
 
+def on_one_axle(wheels: Sequence[FoundWheel], name: str) -> tuple[list[FoundWheel], list[str]]:
+    """Wheels on parallel axles, moved onto the one in their middle, about which a tandem turns."""
+    lines = [Line(wheel.hub_m[:2], wheel.axle[:2]) for wheel in wheels]
+    if not are_parallel(lines) or common_line(lines):
+        return [*wheels], []
+    ahead = lines[0].normal
+    along = [float(line.point @ ahead) for line in lines]
+    axles = sorted({round(each, 3) for each in along})
+    middle = (axles[0] + axles[-1]) / 2.0
+    moved = []
+    for wheel, each in zip(wheels, along, strict=True):
+        off = (middle - each) * ahead
+        moved.append(replace(wheel, hub_m=wheel.hub_m + np.array([off[0], off[1], 0.0])))
+    return moved, [f"{len(axles)} parallel axles of {name} would hold each other straight; their wheels count as on the "
+                   f"one in their middle, {(axles[-1] - axles[0]) / 2.0:.3g} m from the outer ones"]
+
+
 def hung_of(robot: Robot, ground: Ground, is_fixed: bool) -> tuple[list[HungBody], Ground, list[str]]:
     """Bodies with parents first, what stays with the carriage, and remarks; `is_fixed`: the carriage's wheels are
     plain, so that they hinder the others."""
@@ -132,7 +149,8 @@ def hung_of(robot: Robot, ground: Ground, is_fixed: bool) -> tuple[list[HungBody
         wheels = [wheel for wheel in on_hinges if wheel.swivel and wheel.swivel.joint is joint]
         if len(wheels) > 1:
             wheels, moved = straightened(wheels)
-            remarks += moved
+            wheels, merged = on_one_axle(wheels, joint.name)
+            remarks += [*moved, *merged]
         made[joint.name] = _body(robot, ground, joint, wheels, hinges, made)
     bodies = _coordinated([*made.values()], ground, is_fixed)
     remarks += [remark for wheel in on_hinges for remark in wheel.remarks]

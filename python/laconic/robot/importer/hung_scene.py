@@ -251,7 +251,8 @@ def rigid_table(vehicle: Mapping[str, Any], placed: Sequence[Placed], mass_kg: f
                 ) -> dict[str, Any]:
     """The vehicle as it stands in the file's zero position, on wheels that carry a load: for its loads at rest."""
     wheels = [{**vehicle["wheel"][at], "kind": "fixed", "x_m": float(each.wheel.hub_m[0]),
-               "y_m": float(each.wheel.hub_m[1]), "axle_rad": each.wheel.axle_rad, "body": CARRIAGE}
+               "y_m": float(each.wheel.hub_m[1]), "axle_rad": each.wheel.axle_rad, "body": CARRIAGE,
+               "inertia_kgm2": 1.0}  # of no effect at rest; a caster's may be 0
               for at, each in enumerate(placed)]
     for wheel in wheels:
         wheel.pop("body")

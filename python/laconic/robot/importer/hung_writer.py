@@ -22,8 +22,8 @@ from laconic.scene.table import Table
 
 IDEAL = ("the ground is ideal, as wheels on hinges do not slip; --no-hinges makes casters and steered wheels supports, "
          "for ground with friction and for commands that do not take hinges")
-HELD = ("give --no-hinges for supports in the place of casters and steered wheels, or --wheel JOINT for the wheels that "
-        "count")
+HELD = ("give --no-hinges for supports in the place of casters and steered wheels, or --wheel JOINT for the wheels "
+        "that count")
 
 
 class HungWriter(Writer):

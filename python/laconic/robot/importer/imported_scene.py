@@ -18,6 +18,7 @@ from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
 from laconic.robot.importer.dropped import drives_elsewhere, dropped_of, idle_of
 from laconic.robot.importer.formats import read_robot
 from laconic.robot.importer.gravity import listed
+from laconic.robot.importer.hung import on_one_axle
 from laconic.robot.importer.plausible import doubts_of
 from laconic.robot.importer.push import (
     ACCELERATION_M_PER_S2,
@@ -32,6 +33,7 @@ from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import Robot
 from laconic.robot.importer.rollers import Kind, kinds_of
 from laconic.robot.importer.supports import Support, find_supports
+from laconic.robot.importer.surfaces import grips_along
 from laconic.robot.importer.wheels import FoundWheel, Ground, find_wheels
 from laconic.scene import Scene, scene_of
 from laconic.scene.axle_lines import meeting_point
@@ -85,6 +87,10 @@ def import_robot(path: Path, answers: Answers) -> Imported:
         raise BadInput(f"{path}: has {count} wheels, and this build of the core has room for {room}; give "
                        "--wheel JOINT for those that count")
     wheels, straight = straightened(ground.wheels)
+    if any(wheel.is_steered for wheel in on_hinges) and not answers.rollers and not any(
+            wheel.rollers or wheel.surface and grips_along(wheel.surface) is not None for wheel in wheels):
+        wheels, merged = on_one_axle(wheels, robot.base) if wheels else (wheels, [])
+        straight = [*straight, *merged]
     kinds = kinds_of(str(path), wheels, answers)
     if kinds and all(kind.kind == "fixed" for kind in kinds):
         wheels, meeting = brought_to_meet(wheels)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -205,6 +205,8 @@ def _apart(found: Sequence[FoundWheel], answers: Answers, are_named: bool
     for wheel in found:
         slides = (wheel.surface is not None and is_frictionless(wheel.surface)
                   and answer(answers.rollers, wheel.name) is None)
+        if slides and answers.with_hinges and not _turns_as_told(wheel):  # however its fork points
+            wheel = replace(wheel, swivel=None)
         (casters if wheel.swivel or slides else wheels).append(wheel)
     if are_named:  # without friction or not
         return [each for each in found if not each.swivel], [each for each in found if each.swivel]
