@@ -157,6 +157,42 @@ def test_trailers_hang_behind_one_another(tmp_path: Path) -> None:
         -(math.atan(0.2 / radius) + math.atan(0.6 / axle)), abs=0.01)
 
 
+def test_a_kingpin_with_a_little_trail_and_limits_steers_without_a_command(tmp_path: Path) -> None:
+    front = "".join(swivel(name, 0.5, y, trail=0.009, kind="revolute", more=LIMIT.format(-0.5, 0.5, 2.0))
+                    for name, y in (("fl", 0.2), ("fr", -0.2)))
+    found, scene = imported(tmp_path, robot(base(0.2), REAR, front, control((), ROLL)))
+    assert [body["hinge"] for body in scene.vehicle["body"]] == ["coordinated"] * 2
+    assert "trail 9 mm, as a kingpin has within limits of 57°" in found.hinges[0]
+    assert "the trail of fl_turn, 9 mm, counts as 0" in found.remarks
+    assert end_of(scene)["heading_rad"] > 5.0
+
+
+def test_a_joint_whose_limits_hold_it_is_no_hinge(tmp_path: Path) -> None:
+    _, scene = imported(tmp_path, robot(base(0.1), REAR, swivel("front", 0.0, 0.0, kind="revolute",
+                                                                more=LIMIT.format(0.0, 0.0, 1.0)).replace(
+        'xyz="0.0 0.0 0"', 'xyz="0 0.4 0"'), control((), ROLL)))
+    assert not scene.has_hinges and len(scene.vehicle["wheel"]) == 3
+
+
+def caster_within(stop_rad: float) -> str:
+    return robot(base(0.1), REAR, swivel("front", 0.3, 0.0, trail=0.04, kind="revolute",
+                                         more=LIMIT.format(-stop_rad, stop_rad, 1)), control((), ROLL))
+
+
+def test_a_run_ends_before_a_caster_comes_to_its_stop(tmp_path: Path) -> None:
+    found, scene = imported(tmp_path, caster_within(0.36))
+    assert any(each.startswith("the run ends before this: at t = ") and "comes to its stop" in each
+               for each in found.remarks)
+    assert 3.0 < scene.run.duration_s < 12.0
+    assert end_of(scene)["yaw_rate_rad_per_s"] > 0.1
+
+
+def test_a_turn_that_a_stop_prevents_is_left_out_with_a_word(tmp_path: Path) -> None:
+    found, scene = imported(tmp_path, caster_within(0.1))
+    assert any(each.startswith("a turn is refused, as where a caster comes to its stop") for each in found.remarks)
+    assert end_of(scene)["velocity_body_m_per_s[1]"] == pytest.approx(0.3, rel=0.01)
+
+
 def test_tandem_axles_turn_about_their_middle(tmp_path: Path) -> None:
     second = wheel("t_left_2", "t", "-0.8 0.15 -0.05") + wheel("t_right_2", "t", "-0.8 -0.15 -0.05")
     rear = wheel("left_2", "base", "-0.1 0.2 -0.05") + wheel("right_2", "base", "-0.1 -0.2 -0.05")

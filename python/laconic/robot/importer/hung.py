@@ -18,7 +18,7 @@ from laconic.robot.importer.axle_lines import straightened
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import BALL, Joint, Link, Robot
-from laconic.robot.importer.steering import FULL_RAD, NEAR, foot_of, has_no_trail, swivels, turntables
+from laconic.robot.importer.steering import FULL_RAD, NEAR, foot_of, has_no_trail, is_kingpin, swivels, turntables
 from laconic.robot.importer.wheels import FoundWheel, Ground
 from laconic.scene.axle_lines import WITHIN_RAD, Line, are_parallel, common_line
 
@@ -129,8 +129,8 @@ def on_one_axle(wheels: Sequence[FoundWheel], name: str) -> tuple[list[FoundWhee
     for wheel, each in zip(wheels, along, strict=True):
         off = (middle - each) * ahead
         moved.append(replace(wheel, hub_m=wheel.hub_m + np.array([off[0], off[1], 0.0])))
-    return moved, [f"{len(axles)} parallel axles of {name} would hold each other straight; their wheels count as on the "
-                   f"one in their middle, {(axles[-1] - axles[0]) / 2.0:.3g} m from the outer ones"]
+    return moved, [f"{len(axles)} parallel axles of {name} would hold each other straight; their wheels count as on "
+                   f"the one in their middle, {(axles[-1] - axles[0]) / 2.0:.3g} m from the outer ones"]
 
 
 def hung_of(robot: Robot, ground: Ground, is_fixed: bool) -> tuple[list[HungBody], Ground, list[str]]:
@@ -193,6 +193,8 @@ def _steered(joint: Joint, wheels: Sequence[FoundWheel], hinge: Array) -> tuple[
     trail = "zero trail" if has_none else f"trail {1e3 * lever:.0f} mm"
     if joint.commands:
         return True, f"{trail}, commanded by {joint.commands[0].what}"
+    if not has_none and is_kingpin(joint, lever, first.radius_m):
+        return True, f"{trail}, as a kingpin has within limits of {np.degrees(joint.range_rad):.0f}°"
     return has_none, trail if has_none else f"{trail}, no command"
 
 
@@ -247,7 +249,7 @@ def _coordinated(bodies: Sequence[HungBody], ground: Ground, is_fixed: bool) -> 
     why = "all point along one motion, as they would contradict each other else"
     ahead = ahead_of(ground)
     turn = float(np.arctan2(ahead[1], ahead[0]))  # such a body points along its first axis
-    changed = {each.name: replace(each, kind=COORDINATED, why=f"{each.why}; {why}",
+    changed = {each.name: replace(each, kind=COORDINATED, why=f"{each.why}; {why}", start_rad=within_pi(turn),
                                   frame_rad=within_pi(each.frame_rad + turn)) for each in steered}
     return [changed.get(each.name, each) for each in bodies]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -90,7 +90,20 @@ class Driven:
 
 
 def drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[float], float]) -> Driven:
-    """Inputs for a scene whose other tables are `data`."""
+    """Inputs for a scene whose other tables are `data`: ahead, or back where its hinges let it go there alone."""
+    found = _drive(plan, data, where, rounded)
+    if found.inputs:
+        return found
+    back = _drive(replace(plan, ahead=-plan.ahead), data, where, rounded)
+    return replace(back, words=tuple(each.replace("ahead", "back") for each in back.words)) if back.inputs else found
+
+
+def shortened(inputs: Tables, until_s: float) -> Tables:
+    """The inputs of a run that ends earlier."""
+    return [_within(each, until_s) for each in inputs]
+
+
+def _drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[float], float]) -> Driven:
     steering, steer_words, ends_s = _steering(plan, data["vehicle"], rounded)
     ahead = _torques(plan)
     if not ahead:
@@ -102,18 +115,19 @@ def drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[fl
     if speed is None:
         return Driven([], SHORTEST_S, (), "torques that roll the driven wheels ahead do not move the robot ahead; no "
                                           "inputs are given")
-    turned_at = None
+    turned_at, remark = None, ""
     if differ:
         differ, turned_at = _corrected(plan, data, where, differ, ahead, plan.ramp_s + TURN_S,
                                        plan.yaw_rate_rad_per_s, 1)
         differ = differ if turned_at is not None else {}
+        remark = "" if differ else "a turn is refused, as where a caster comes to its stop; the run goes straight ahead"
     inputs = _tables(plan, ahead, differ, rounded)
     words = (f"these torques roll it ahead to {speed:.2g} m/s in {plan.ramp_s:.3g} s",)
     if differ:
         words = (f"{words[0]}, and then turn it to the left",)
         ends_s = plan.ramp_s + TURN_S + (2.0 * math.pi / plan.yaw_rate_rad_per_s if _lead(plan) > -LEAD_M else BRIEF_S)
     duration = float(math.ceil(min(max(ends_s, SHORTEST_S), LONGEST_S)))
-    return Driven([*inputs, *steering], duration, (*words, *steer_words))
+    return Driven([*inputs, *steering], duration, (*words, *steer_words), remark)
 
 
 # ------------------------------------------------------------------------------------------ torques

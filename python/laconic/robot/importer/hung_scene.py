@@ -19,7 +19,7 @@ from laconic.scene.scene_text import Comments
 
 RATE_RAD_PER_S = 1.0  # of a prescribed hinge whose file states none
 STRAIGHT_DEG = -90.0
-ZERO_M, TOLD_RAD = 1e-6, math.radians(0.2)
+ZERO_M, TOLD_M, TOLD_RAD = 1e-6, 1e-3, math.radians(0.2)
 WHAT = {"wheel": "steered wheel", "caster": "swivel caster", "trailer": "trailer", "body": "body on a hinge"}
 Rounded = Callable[[float], float]
 
@@ -132,7 +132,8 @@ class HungTables:
                 "assumption: the file has no speed limit of this joint")
         if body.start_rad:
             found["start_angle_deg"] = self.rounded(math.degrees(body.start_rad))
-            self.comments[(*where, "start_angle_deg")] = "as the file places it"
+            self.comments[(*where, "start_angle_deg")] = (
+                "as the file places it" if body.kind == FREE else "straight ahead")
         return found
 
     def caster(self, body: HungBody, where: tuple[str, ...]) -> dict[str, Any]:
@@ -209,10 +210,13 @@ class HungTables:
 
     def remark_zero(self, body: HungBody) -> None:
         """A sense or a zero of the hinge that is not that of the joint."""
-        zero = body.zero_rad
-        if body.kind != FREE and abs(zero) > TOLD_RAD:
-            self.remarks.append(f"hinge {body.name} is 0 where its wheel rolls straight ahead, and starts so; joint "
-                                f"{body.joint.name} is 0 at {math.degrees(zero):.3g}°")
+        zero, straight = body.zero_rad, body.start_rad
+        if body.kind != FREE and abs(zero - straight) > TOLD_RAD:
+            self.remarks.append(f"hinge {body.name} is {math.degrees(straight):.3g}° where its wheel rolls straight "
+                                f"ahead, and starts so; joint {body.joint.name} is 0 at {math.degrees(zero):.3g}°")
+        trail = max((abs(float(body.local(each.hub_m)[0])) for each in body.wheels), default=0.0)
+        if (body.kind == COORDINATED or body.form == "wheel") and trail > TOLD_M:
+            self.remarks.append(f"the trail of {body.name}, {1e3 * trail:.3g} mm, counts as 0")
         if body.kind != FREE and body.sense < 0.0:
             self.remarks.append(f"hinge {body.name} turns to the left, joint {body.joint.name} to the right: their "
                                 "signs differ")

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from laconic.errors import BadInput, Refused
 from laconic.robot.importer.dropped import idle_of
 from laconic.robot.importer.hung import ahead_of, hung_of, links_of_carriage
-from laconic.robot.importer.hung_push import SHORTEST_S, STEP_S, Plan, drive
+from laconic.robot.importer.hung_push import SHORTEST_S, STEP_S, Plan, drive, shortened
 from laconic.robot.importer.hung_scene import HungTables, rigid_table
 from laconic.robot.importer.imported_scene import Imported, Writer, _path, _rounded, in_one_line
 from laconic.robot.importer.rigid_body import add_up
@@ -68,7 +70,7 @@ class HungWriter(Writer):
         for at, words in zip([each for each in firsts if each is not None], driven.words, strict=False):
             self.comments["input", str(at), "signal"] = f"assumption: {words}"
         data["run"] = {"duration_s": driven.duration_s, "step_s": STEP_S}
-        self.checked(data)
+        self.check_run(data)
         assumed = [f"{_path(where)}: {why}" for where, why in self.comments.items() if why.startswith("assumption")
                    and where[-1] != "kind"]
         for index, (each, load_N) in enumerate(zip(self.supports, standing.support_N, strict=True)):
@@ -135,17 +137,30 @@ class HungWriter(Writer):
         """The scene that the tables make, at its start; what the core refuses is BadInput, by the robot's file."""
         import copy
 
-        from laconic.simulation import simulate
-
         try:
             scene = scene_of(Table(self.robot.path, "", copy.deepcopy(data)))
-            run = simulate(scene, ("x_m",)) if "input" in data else None
             scene.articulated_vehicle(scene.core())
         except (Refused, BadInput) as refused:
             raise BadInput(f"{str(refused).rstrip('.')}; {HELD}") from None
-        if run is not None and run.refused:
-            self.remarks.append(f"the run of these inputs ends early: {run.refused.message}")
         return scene
+
+    def check_run(self, data: dict[str, Any]) -> None:
+        """Ends the run before a step that is refused, such as where a caster comes to its stop."""
+        from laconic.simulation import RunRefused, simulate
+
+        scene = self.checked(data)
+        try:
+            simulate(scene, ("x_m",))
+        except RunRefused as refused:
+            ends_s = round(float(np.floor(10.0 * refused.run.time_s[-1])) / 10.0, 6)
+            if ends_s < STEP_S:
+                raise BadInput(f"{str(refused).rstrip('.')}; {HELD}") from None
+            self.remarks.append(f"the run ends before this: {str(refused).removeprefix(f'{self.robot.path}: ')}")
+            data["run"]["duration_s"] = ends_s
+            data["input"] = shortened(data.get("input", []), ends_s)
+            self.checked(data)
+        except (Refused, BadInput) as refused:
+            raise BadInput(f"{str(refused).rstrip('.')}; {HELD}") from None
 
     def standing(self, scene: Scene) -> Standing:
         """Loads at rest as the file places all parts, held as one body."""

@@ -11,6 +11,8 @@ from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import BALL, HINGE, Joint, Robot
 
 UPRIGHT = np.cos(np.radians(20.0))  # of a swivel's axis: kingpins of cars are inclined by up to 15°
+HELD_RAD = np.radians(0.2)  # what turns less is held by its limits
+KINGPIN, KINGPIN_RAD = 0.2, np.radians(180.0)  # of the radius: trail that a car's kingpin has, within limits
 FULL_RAD = np.radians(359.0)  # what turns less is said to have limits
 NO_TRAIL, NO_TRAIL_M = 0.05, 1e-3  # of the wheel's radius, and at least
 NEAR = 2.0  # times its radius: a wheel that trails farther is carried by a body, not by a fork
@@ -38,7 +40,7 @@ def is_upright(joint: Joint) -> bool:
 
 def swivels(joint: Joint) -> bool:
     """Whether what hangs on it can turn about an upright axis: an upright hinge, or a ball as that of a hitch."""
-    return is_upright(joint) or joint.kind == BALL
+    return joint.kind == BALL or (is_upright(joint) and joint.range_rad > HELD_RAD)
 
 
 def foot_of(joint: Joint, ground_z: float) -> Array:
@@ -46,6 +48,11 @@ def foot_of(joint: Joint, ground_z: float) -> Array:
     if joint.kind == BALL:
         return np.array([*joint.point_m[:2], ground_z])
     return np.asarray(joint.point_m + joint.axis * ((ground_z - joint.point_m[2]) / joint.axis[2]))
+
+
+def is_kingpin(joint: Joint, trail_m: float, radius_m: float) -> bool:
+    """Whether a joint that nothing commands is that of a car's front wheel: little trail, and limits."""
+    return trail_m <= KINGPIN * radius_m and joint.range_rad < KINGPIN_RAD
 
 
 def has_no_trail(trail_m: float, radius_m: float) -> bool:
@@ -87,5 +94,7 @@ def _kind(joint: Joint, trail_m: float, radius_m: float) -> tuple[bool, str]:
         return True, f"{trail}, commanded by {joint.commands[0].what}"
     if has_none:
         return True, trail
+    if is_kingpin(joint, trail_m, radius_m):
+        return True, f"{trail}, as a kingpin has within limits of {np.degrees(joint.range_rad):.0f}°"
     limits = f", turns within limits of {np.degrees(joint.range_rad):.0f}°" if joint.range_rad < FULL_RAD else ""
     return False, f"{trail}, no command{limits}"
