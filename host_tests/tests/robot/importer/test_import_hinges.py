@@ -363,3 +363,6 @@ def test_sdf_links_without_inertial_have_the_formats_own(tmp_path: Path) -> None
         plain["yaw_inertia_kgm2"] + 1.0 + 6.0 * 1.0 / 7.0 * float(off @ off))
     assert any("links without <inertial> have the mass and inertia that SDF gives them, 1 kg and 1 kg·m²: plate" in each
                for each in found.remarks)
+    automatic = SDF.replace("<inertial>", '<inertial auto="true">', 1)
+    assert any('<inertial auto="true"> is not computed of shapes' in each and "count for base" in each
+               for each in imported(tmp_path, automatic, "robot.sdf")[0].remarks)

@@ -144,6 +144,7 @@ class _Model:
         self.path, self.model, self.files, self.gravity_m_per_s2 = path, model, files, gravity_m_per_s2
         self.remarks = [*remarks, *self._nested(), *self._gearboxes()]
         self.usual: list[str] = []  # links without <inertial>
+        self.automatic: list[str] = []  # links whose <inertial> asks for that of their shapes
         for part in (*model.findall("link"), *model.findall("joint")):
             refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}
@@ -176,8 +177,12 @@ class _Model:
 
     def _usual_inertials(self) -> list[str]:
         """A remark on links that have the mass and inertia of the format, since they give none."""
-        return [f"links without <inertial> have the mass and inertia that SDF gives them, {USUAL_MASS_KG:g} kg and "
-                f"{USUAL_INERTIA_KGM2:g} kg·m²: {listed(self.usual)}; give them an <inertial>"] if self.usual else []
+        found = [f"links without <inertial> have the mass and inertia that SDF gives them, {USUAL_MASS_KG:g} kg and "
+                 f"{USUAL_INERTIA_KGM2:g} kg·m²: {listed(self.usual)}; give them an <inertial>"] if self.usual else []
+        if self.automatic:
+            found.append('<inertial auto="true"> is not computed of shapes: the <mass> and <inertia> there, or the '
+                         f"format's 1 kg and 1 kg·m², count for {listed(self.automatic)}; give both")
+        return found
 
     def _gearboxes(self) -> list[str]:
         """A remark on each joint that couples two others."""
@@ -271,6 +276,8 @@ class _Model:
             self.usual.append(name)
             return Link(name, USUAL_MASS_KG, point_of(frame), USUAL_INERTIA_KGM2 * np.eye(3), shapes, unread=unread,
                         unread_collides=lacks_shape)
+        if inertial.get("auto") in ("1", "true"):
+            self.automatic.append(name)
         placed = frame @ _placement(where, inertial.find("pose"))
         given = inertial.find("inertia")
         moments = {key: _text(given, key) or usual for key, usual in TEXTS.items()} if given is not None else TEXTS
