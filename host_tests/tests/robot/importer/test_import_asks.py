@@ -85,7 +85,7 @@ WRONG: list[tuple[str, str, list[str], str]] = [
     ("a model of a URDF", GOOD, ["--model", "q"], "--model: "),
     ("no wheels", GOOD.replace("continuous", "fixed"), [], "no joint turns round on a level axle"),
     ("axles upright", GOOD.replace("0 1 0", "0 0 1"), [], "no joint turns round on a level axle"),
-    ("all steered", STEERED, [], "all wheels swivel (front)"),
+    ("all steered", STEERED, ["--no-hinges"], "all wheels swivel (front)"),
     ("four across", robot(FOUR_WHEELS), [], "--rollers none with --friction"),
     ("three around the middle", robot(THREE_AROUND), [],
      "give --rollers omni, --rollers JOINT=DEGREES, or --rollers none"),

@@ -58,7 +58,7 @@ def test_a_steering_link_with_the_wheels_shape_takes_no_load_from_held_wheels(tm
 
 
 def test_a_steering_link_with_the_wheels_shape_is_one_support_with_its_wheel(tmp_path: Path) -> None:
-    _, scene = imported(tmp_path, steered_car(steer_has_shape=True))
+    _, scene = imported(tmp_path, steered_car(steer_has_shape=True), hinges=False)
     assert [(each["x_m"], each["y_m"]) for each in scene.vehicle["support"]] == [(0.2, 0.2), (0.2, -0.2)]
 
 
@@ -102,7 +102,7 @@ def test_a_caster_of_two_wheels_is_one_support(tmp_path: Path) -> None:
                                                             axis="0 0 1")
     twins = wheel("one", "fork", "-0.03 0.02 -0.07", radius=0.03) + wheel("two", "fork", "-0.03 -0.02 -0.07",
                                                                           radius=0.03)
-    _, scene = imported(tmp_path, robot(TWO_WHEELS, fork, twins))
+    _, scene = imported(tmp_path, robot(TWO_WHEELS, fork, twins), hinges=False)
     assert [(each["x_m"], each["y_m"]) for each in scene.vehicle["support"]] == [(-0.2, 0.0)]
 
 

@@ -1,5 +1,6 @@
 """Steering is not swivelling: a joint that is commanded or has no trail steers, one with trail and no command is that
-of a caster, and one that carries all wheels is held. The words say which and why."""
+of a caster, and one that carries all wheels is held. The words say which and why. Here without hinges: a support takes
+the place of each."""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ def swivelling(trail: float, kind: str = "continuous", more: str = "", *parts: s
 
 def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:
     (folder / name).write_text(text, encoding="utf-8")
-    found = import_robot(folder / name, Answers(**answers))
+    found = import_robot(folder / name, Answers(**{"hinges": False} | answers))
     (folder / "robot.toml").write_text(found.text, encoding="utf-8")
     return found, read_scene(folder / "robot.toml")
 

@@ -81,7 +81,7 @@ def test_casters_and_shapes_on_the_ground_become_supports(tmp_path: Path) -> Non
                  wheel("caster", "fork", "-0.03 0 -0.07", radius=0.03),
                  link("ball", '<collision><geometry><sphere radius="0.02"/></geometry></collision>'),
                  joint("b", "fixed", "base", "ball", "0.15 0.1 -0.08"))
-    vehicle = imported(tmp_path, text)["vehicle"]
+    vehicle = imported(tmp_path, text, Answers(hinges=False))["vehicle"]
     assert len(vehicle["wheel"]) == 2
     assert [(each["x_m"], each["y_m"]) for each in vehicle["support"]] == [(-0.2, 0.0), (0.15, 0.1)]
     comments = (tmp_path / "scene.toml").read_text(encoding="utf-8")

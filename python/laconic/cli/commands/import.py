@@ -26,19 +26,23 @@ from laconic.errors import BadInput
 @click.option("--wheel-inertia", "inertias", multiple=True, metavar="[JOINT=]KGM2",
               help="Moment of inertia about the axle, of all wheels or of one.")
 @click.option("--friction", type=float, metavar="MU", help="Ground with this friction coefficient: wheels may slip.")
+@click.option("--hinges/--no-hinges", "hinges", default=None,
+              help="Steered wheels, casters and trailers turn on hinges; or steered wheels and casters are supports. "
+                   "The usual is --hinges, and --no-hinges with --wheel.")
 @click.option("--model", metavar="NAME", help="Name of one of several models in the file (SDF, MJCF).")
 @click.option("--set", "arguments", multiple=True, metavar="NAME:=VALUE", help="An argument of the xacro file.")
 @click.option("--package", "packages", multiple=True, metavar="NAME=FOLDER",
               help="Folder of a ROS package or Gazebo model that is not next to or above the file.")
 @json_flag("Parts, assumptions and omissions as JSON on stdout.")
 def command(robot: Path, out: Path, wheels: tuple[str, ...], rollers: tuple[str, ...], radius: tuple[str, ...],
-            inertias: tuple[str, ...], friction: float | None, model: str | None, arguments: tuple[str, ...],
-            packages: tuple[str, ...], json_wanted: bool) -> None:
+            inertias: tuple[str, ...], friction: float | None, hinges: bool | None, model: str | None,
+            arguments: tuple[str, ...], packages: tuple[str, ...], json_wanted: bool) -> None:
     """Makes a scene of ROBOT: masses, inertias, centre of mass, and places, axles, radii and rollers of the wheels.
 
-    Wheels are the joints that turn round on a level axle and whose shapes reach the ground, on any link. Casters and
-    other shapes on the ground become supports. Information that is not in the file (rollers that it does not draw, the
-    radius of a wheel without shape, motors) is requested, or marked as an assumption in a comment of ROBOT.toml.
+    Wheels are the joints that turn round on a level axle and whose shapes reach the ground, on any link. Steered
+    wheels, casters and trailers turn on hinges. Other shapes on the ground become supports. Information that is not in
+    the file (rollers that it does not draw, the radius of a wheel without shape, motors) is requested, or marked as an
+    assumption in a comment of ROBOT.toml.
     """
     from laconic.robot.importer import Answers, import_robot
     from laconic.robot.importer.answers import by_joint, positive
@@ -50,14 +54,16 @@ def command(robot: Path, out: Path, wheels: tuple[str, ...], rollers: tuple[str,
         wheels, by_joint("--rollers", rollers, read_rollers), by_joint("--radius", radius, positive),
         by_joint("--wheel-inertia", inertias, positive), friction, model,
         pairs("--set", arguments, ":="),
-        {name: Path(folder) for name, folder in pairs("--package", packages, "=").items()}))
+        {name: Path(folder) for name, folder in pairs("--package", packages, "=").items()}, hinges))
     write_text(out, found.text)
     if json_wanted:
-        click.echo(json.dumps({"name": found.name, "wheels": found.wheels, "supports": found.supports,
+        click.echo(json.dumps({"name": found.name, "wheels": found.wheels, "hinges": found.hinges,
+                               "supports": found.supports,
                                "assumptions": found.assumptions, "remarks": found.remarks,
                                "standing": found.standing.as_json()}, indent=1, ensure_ascii=False))
         return
-    for line in (*found.wheels, *found.supports, found.standing.in_words(), *found.assumptions, *found.remarks):
+    for line in (*found.wheels, *found.hinges, *found.supports, found.standing.in_words(), *found.assumptions,
+                 *found.remarks):
         click.echo(line, err=is_stdout(out))
 
 

@@ -26,6 +26,12 @@ class Answers:
     model: str | None = None
     xacro_arguments: Mapping[str, str] = field(default_factory=dict)
     packages: Mapping[str, Path] = field(default_factory=dict)
+    hinges: bool | None = None  # None: unless wheels are named
+
+    @property
+    def with_hinges(self) -> bool:
+        """Whether steered wheels, casters and trailers turn on hinges, and are not held or replaced."""
+        return not self.wheels if self.hinges is None else self.hinges
 
     def check(self, joints: Sequence[str]) -> None:
         """BadInput for an answer about a joint that is no wheel."""

@@ -18,6 +18,7 @@ from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
 from laconic.robot.importer.dropped import drives_elsewhere, dropped_of, idle_of
 from laconic.robot.importer.formats import read_robot
 from laconic.robot.importer.gravity import listed
+from laconic.robot.importer.hung import on_one_axle
 from laconic.robot.importer.plausible import doubts_of
 from laconic.robot.importer.push import (
     ACCELERATION_M_PER_S2,
@@ -32,6 +33,7 @@ from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import Robot
 from laconic.robot.importer.rollers import Kind, kinds_of
 from laconic.robot.importer.supports import Support, find_supports
+from laconic.robot.importer.surfaces import grips_along
 from laconic.robot.importer.wheels import FoundWheel, Ground, find_wheels
 from laconic.scene import Scene, scene_of
 from laconic.scene.axle_lines import meeting_point
@@ -71,26 +73,37 @@ class Imported:
     remarks: tuple[str, ...]
     supports: tuple[str, ...]
     standing: Standing
+    hinges: tuple[str, ...] = ()
 
 
 def import_robot(path: Path, answers: Answers) -> Imported:
     """Reads URDF, xacro, MJCF or SDF; BadInput where the file cannot be used, or where something must be asked for."""
     robot = read_robot(path, answers)
     ground = find_wheels(robot, answers)
-    answers.check([wheel.name for wheel in ground.wheels])
-    if len(ground.wheels) > (room := load("double").max_wheels):
-        raise BadInput(f"{path}: has {len(ground.wheels)} wheels, and this build of the core has room for {room}; give "
+    on_hinges = [wheel for wheel in ground.casters if wheel.swivel] if answers.with_hinges else []
+    answers.check([wheel.name for wheel in (*ground.wheels, *on_hinges)])
+    count = len(ground.wheels) + len(on_hinges)
+    if count > (room := load("double").max_wheels):
+        raise BadInput(f"{path}: has {count} wheels, and this build of the core has room for {room}; give "
                        "--wheel JOINT for those that count")
     wheels, straight = straightened(ground.wheels)
+    if any(wheel.is_steered for wheel in on_hinges) and not answers.rollers and not any(
+            wheel.rollers or wheel.surface and grips_along(wheel.surface) is not None for wheel in wheels):
+        wheels, merged = on_one_axle(wheels, robot.base) if wheels else (wheels, [])
+        straight = [*straight, *merged]
     kinds = kinds_of(str(path), wheels, answers)
-    if all(kind.kind == "fixed" for kind in kinds):
+    if kinds and all(kind.kind == "fixed" for kind in kinds):
         wheels, meeting = brought_to_meet(wheels)
         straight = [*straight, *meeting]
     ground = replace(ground, wheels=tuple(wheels), remarks=(*straight, *ground.remarks))
     whole = add_up(robot.links.values())
     if whole.mass_kg <= 0.0:
         raise BadInput(f"{path}: all links are without mass; give them an <inertial>")
-    return _Writer(robot, ground, kinds, whole, answers).imported()
+    if on_hinges:
+        from laconic.robot.importer.hung_writer import HungWriter  # which builds on this module
+
+        return HungWriter(robot, ground, kinds, whole, answers).imported()
+    return Writer(robot, ground, kinds, whole, answers).imported()
 
 
 def in_one_line(text: str) -> str:
@@ -99,16 +112,24 @@ def in_one_line(text: str) -> str:
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode("ascii") for each in text)
 
 
-class _Writer:
+class Writer:
     """Collects the tables and their comments."""
 
     def __init__(self, robot: Robot, ground: Ground, kinds: Sequence[Kind], whole: RigidBody, answers: Answers):
         self.robot, self.ground, self.kinds, self.whole, self.answers = robot, ground, kinds, whole, answers
-        self.supports, untouching = find_supports(robot, ground)
-        self.idle = idle_of(ground)
         self.comments: Comments = {}
-        self.remarks = [*robot.remarks, *ground.remarks, *untouching, *doubts_of(robot, ground, whole, answers),
-                        *dropped_of(ground, answers)]
+        self.every = ground  # with the wheels on hinges
+        self.begin()
+
+    def begin(self) -> None:
+        """What stands on the ground besides wheels, who drives, and what is to be remarked."""
+        self.supports, untouching = find_supports(self.robot, self.ground)
+        self.idle = idle_of(self.ground)
+        self.remarks = [*self.robot.remarks, *self.ground.remarks, *untouching, *self.doubts(self.ground)]
+
+    def doubts(self, ground: Ground) -> list[str]:
+        """Numbers that no robot has, and what the scene does not take."""
+        return [*doubts_of(self.robot, ground, self.whole, self.answers), *dropped_of(ground, self.answers)]
 
     def imported(self) -> Imported:
         """All tables, checked by the core."""
@@ -217,7 +238,7 @@ class _Writer:
         told = [f"# {self.robot.name}, imported from {self.robot.path.name} ({self.robot.format}). The body frame is "
                 "that of link",
                 f"# {self.robot.base}; all joints are in their zero position.", *MOTOR, self.gear()]
-        if any(wheel.joint.damping_Nms > 0.0 for wheel in self.ground.wheels):
+        if any(wheel.joint.damping_Nms > 0.0 for wheel in self.every.wheels):
             told += DAMPED
         if self.remarks:
             told += ["# Seen on the way:", *(f"#   {remark}" for remark in self.remarks)]
@@ -226,7 +247,7 @@ class _Writer:
     def gear(self) -> str:
         """The line of the gear ratio, with what the file tells of it."""
         gears: dict[float, str] = {}
-        for command in (each for wheel in self.ground.wheels for each in wheel.joint.commands):
+        for command in (each for wheel in self.every.wheels for each in wheel.joint.commands):
             if command.gear:
                 gears.setdefault(command.gear, command.what)
         return GEAR + (f"      # {', '.join(f'{gear:g} ({what})' for gear, what in gears.items())}" if gears else "")
@@ -264,7 +285,7 @@ class _Writer:
         """One wheel, with a radius and an inertia of its own."""
         where = ("vehicle", "wheel", str(index))
         self.comments[(*where, "kind")] = f"{wheel.name}; {kind.why}" if kind.is_told else f"{kind.why} ({wheel.name})"
-        if wheel.inertia_kgm2 <= 0.0:
+        if wheel.inertia_kgm2 <= 0.0 and self.needs_inertia(wheel):
             raise BadInput(f"{self.robot.path}: wheel {wheel.name} has no inertia about its axle; give its link an "
                            "<inertia>, or "
                            f"--wheel-inertia {wheel.name}=KGM2")
@@ -284,6 +305,10 @@ class _Writer:
             self.comments[(*where, "driven")] = "the file commands other joints, and not this one"
         return table
 
+    def needs_inertia(self, wheel: FoundWheel) -> bool:
+        """Whether the file must have that of a wheel."""
+        return True
+
     def support(self, index: int, support: Support) -> dict[str, Any]:
         """A point that carries a load."""
         self.comments["vehicle", "support", str(index), "x_m"] = support.why
@@ -299,7 +324,7 @@ class _Writer:
                 continue
             found[of_all] = value
             self.comments["vehicle", of_all] = why
-            if key == "inertia_kgm2" and any(wheel.joint.armature_kgm2 for wheel in self.ground.wheels):
+            if key == "inertia_kgm2" and any(wheel.joint.armature_kgm2 for wheel in self.every.wheels):
                 self.comments["vehicle", of_all] = WITH_ARMATURE
             for index, wheel in enumerate(wheels):
                 if wheel.get(key, 0.0) == value:

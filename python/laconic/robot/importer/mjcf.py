@@ -163,10 +163,12 @@ def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], 
     at = int(model.jnt_dofadr[joint])
     damping, friction = (not_negative(f"{path}: joint {name}", what, numbers[at], DISSIPATION[what])
                          for what, numbers in (("damping", model.dof_damping), ("friction", model.dof_frictionloss)))
-    range_rad = float(np.ptp(model.jnt_range[joint])) if model.jnt_limited[joint] else np.inf
+    zero = float(model.qpos0[model.jnt_qposadr[joint]]) if kind == HINGE else 0.0
+    low, high = (model.jnt_range[joint] - zero).tolist() if model.jnt_limited[joint] else (-np.inf, np.inf)
     axis = back[:3, :3] @ data.xaxis[joint] if kind in (HINGE, SLIDE) else np.zeros(3)
     armature = not_negative(f"{path}: joint {name}", "armature", model.dof_armature[at], "kg·m²")
     stiffness = float(np.ravel(model.jnt_stiffness[joint])[0])
     return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis,
-                 range_rad < TURNS_ROUND_RAD, damping, friction, range_rad, armature if kind == HINGE else 0.0,
-                 tuple(commands.get(joint, ())), (f"spring of {stiffness:g} N·m/rad",) if stiffness > 0.0 else ())
+                 high - low < TURNS_ROUND_RAD, damping, friction, high - low, armature if kind == HINGE else 0.0,
+                 tuple(commands.get(joint, ())), (f"spring of {stiffness:g} N·m/rad",) if stiffness > 0.0 else (),
+                 low, high)

@@ -160,6 +160,9 @@ class Joint:
     armature_kgm2: float = 0.0  # of what turns with it and is no link, such as a rotor behind its gear
     commands: tuple[Command, ...] = ()
     left_out: tuple[str, ...] = ()  # numbers of the file that no scene has, in words
+    low_rad: float = -np.inf  # limits, from the zero position; infinite where it has none
+    high_rad: float = np.inf
+    speed_limit_rad_per_s: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,7 +39,7 @@ def kinds_of(where: str, wheels: Sequence[FoundWheel], answers: Answers) -> list
     """One for each wheel; BadInput asks where nothing tells."""
     found = [_said(wheel, wheels, answers) or _seen(where, wheel) or _by_friction(wheel) for wheel in wheels]
     plain = [wheel for wheel, kind in zip(wheels, found, strict=True) if kind is None]
-    doubt = hindered(plain) if len(plain) == len(wheels) else ""
+    doubt = hindered(plain) if plain and len(plain) == len(wheels) else ""
     if doubt:
         names = ", ".join(wheel.name for wheel in plain)
         raise BadInput(f"{where}: the axles of {names} {doubt}")

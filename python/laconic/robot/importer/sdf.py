@@ -57,6 +57,7 @@ from laconic.robot.importer.xml_file import Element, bytes_of, root_of
 
 KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
          "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}
+USUAL_MASS_KG, USUAL_INERTIA_KGM2 = 1.0, 1.0  # of the format, where a link gives none
 TEXTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}  # the format's own when not given
 USUAL_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.8)  # of the format, where a file gives none
 LIMITS = {"limit/effort": "effort limit {:g} N·m", "limit/velocity": "speed limit {:g} rad/s",
@@ -142,6 +143,8 @@ class _Model:
         flatten(path, model)
         self.path, self.model, self.files, self.gravity_m_per_s2 = path, model, files, gravity_m_per_s2
         self.remarks = [*remarks, *self._nested(), *self._gearboxes()]
+        self.usual: list[str] = []  # links without <inertial>
+        self.automatic: list[str] = []  # links whose <inertial> asks for that of their shapes
         for part in (*model.findall("link"), *model.findall("joint")):
             refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}
@@ -171,6 +174,15 @@ class _Model:
         """A remark on each file that the model includes."""
         names = [_text(each, "name") or _text(each, "uri") or "<include>" for each in self.model.findall("include")]
         return [f"<include> {name} is not read; its mass is not counted" for name in names]
+
+    def _usual_inertials(self) -> list[str]:
+        """A remark on links that have the mass and inertia of the format, since they give none."""
+        found = [f"links without <inertial> have the mass and inertia that SDF gives them, {USUAL_MASS_KG:g} kg and "
+                 f"{USUAL_INERTIA_KGM2:g} kg·m²: {listed(self.usual)}; give them an <inertial>"] if self.usual else []
+        if self.automatic:
+            found.append('<inertial auto="true"> is not computed of shapes: the <mass> and <inertia> there, or the '
+                         f"format's 1 kg and 1 kg·m², count for {listed(self.automatic)}; give both")
+        return found
 
     def _gearboxes(self) -> list[str]:
         """A remark on each joint that couples two others."""
@@ -240,7 +252,7 @@ class _Model:
         title = self.model.get("name") or self.path.stem
         weightless = [name for name, each in self.links.items() if (_text(each, "gravity") or "") in ("0", "false")]
         remarks = (*self.remarks, *tree.remarks, *self.files.remarks(), *mimics(self.path, masters, joints),
-                   *gravity_left_out(self.gravity_m_per_s2, weightless))
+                   *self._usual_inertials(), *gravity_left_out(self.gravity_m_per_s2, weightless))
         return Robot(title, self.path, "SDF", base, links, joints, remarks).check()
 
     def _between(self, name: str, back: Array) -> Link | None:
@@ -261,14 +273,17 @@ class _Model:
         lacks_shape = bool(self.files.unread(unseen[True]))
         inertial = element.find("inertial")
         if inertial is None:
-            return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread,
+            self.usual.append(name)
+            return Link(name, USUAL_MASS_KG, point_of(frame), USUAL_INERTIA_KGM2 * np.eye(3), shapes, unread=unread,
                         unread_collides=lacks_shape)
+        if inertial.get("auto") in ("1", "true"):
+            self.automatic.append(name)
         placed = frame @ _placement(where, inertial.find("pose"))
         given = inertial.find("inertia")
         moments = {key: _text(given, key) or usual for key, usual in TEXTS.items()} if given is not None else TEXTS
         tensor = inertia_matrix(where, moments)
         turn = placed[:3, :3]
-        kg = mass(where, _text(inertial, "mass") or 1.0)
+        kg = mass(where, _text(inertial, "mass") or USUAL_MASS_KG)
         return Link(name, kg, point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread,
                     unread_collides=lacks_shape)
 
@@ -330,12 +345,16 @@ class _Model:
             axis = self._turn_of_axis(given, xyz, frame, back) @ direction
         damping, friction = (not_negative(where, what, _text(given, f"dynamics/{what}") or 0.0, unit)
                              for what, unit in DISSIPATION.items())
-        range_rad = _range(where, element, given)
+        low, high = _range(where, element, given)
+        speed = read_number(_text(given, "limit/velocity")) or 0.0
         left_out = [words.format(value) for key, words in LIMITS.items()
                     if 0.0 < (value := read_number(_text(given, key)) or 0.0) < NO_LIMIT]
         shown = name if which == FIRST else f"{name} ({which})"
-        return Joint(shown, kind, parent, child, point_of(frame), axis, range_rad < TURNS_ROUND_RAD, damping, friction,
-                     range_rad, commands=tuple(commands), left_out=tuple(left_out))
+        is_limited = high - low < TURNS_ROUND_RAD
+        return Joint(shown, kind, parent, child, point_of(frame), axis, is_limited, damping, friction, high - low,
+                     commands=tuple(commands), left_out=tuple(left_out), low_rad=low if is_limited else -np.inf,
+                     high_rad=high if is_limited else np.inf,
+                     speed_limit_rad_per_s=speed if 0.0 < speed < NO_LIMIT else np.inf)
 
     def _turn_of_axis(self, given: Any, xyz: Any, frame: Array, back: Array) -> Array:
         """The axes that the axis is given in: the joint's, if the file does not say another."""
@@ -347,13 +366,13 @@ class _Model:
         return np.asarray(frame[:3, :3])
 
 
-def _range(where: str, joint: Element, axis: Element | None) -> float:
-    """Between the limits of a hinge."""
+def _range(where: str, joint: Element, axis: Element | None) -> tuple[float, float]:
+    """The limits of a hinge."""
     if joint.get("type") not in ("revolute", *TWO_AXES) or axis is None or axis.find("limit") is None:
-        return np.inf
+        return -np.inf, np.inf
     lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2,
                           largest=np.inf)
-    return upper - lower
+    return lower, upper
 
 
 def _bound(axis: Element, end: str, usual: float) -> Any:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from laconic.robot.importer.hung import HungBody, is_on_hinge
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import BALL, FIXED, SLIDE, Link, Robot, Shape
 from laconic.robot.importer.steering import NEAR, Swivel
@@ -33,10 +34,11 @@ class Support:
     name: str
 
 
-def find_supports(robot: Robot, ground: Ground) -> tuple[list[Support], list[str]]:
+def find_supports(robot: Robot, ground: Ground, bodies: Sequence[HungBody] = ()) -> tuple[list[Support], list[str]]:
     """Of each caster a point, and of each shape that touches the ground beside the wheels its lowest point. The remarks
-    name shapes that touch it and carry nothing, and why."""
-    found, remarks = _casters(ground.casters), []
+    name shapes that touch it and carry nothing, and why. `bodies` on hinges have wheels of their own."""
+    found, remarks = _casters(ground.casters), list[str]()
+    ground = replace(ground, wheels=(*ground.wheels, *(wheel for body in bodies for wheel in body.wheels)))
     turning = {link.name for wheel in (*ground.wheels, *ground.casters)
                for link in robot.below(wheel.joint, rigid=False)}
     smallest = min(wheel.radius_m for wheel in ground.wheels)
@@ -48,6 +50,10 @@ def find_supports(robot: Robot, ground: Ground) -> tuple[list[Support], list[str
         if not touching:
             continue
         carrying = [shape for shape in touching if not _why_none(link, shape, ground, smallest)]
+        if carrying and is_on_hinge(robot, link.name, bodies):
+            remarks.append(f"link {link.name} touches the ground and turns on a hinge; only supports of the carriage "
+                           "count, so it carries nothing")
+            continue
         found += _points(robot, link, carrying, ground)
         if not carrying:
             remarks.append(f"link {link.name} touches the ground and is no support: "

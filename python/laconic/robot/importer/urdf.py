@@ -231,9 +231,11 @@ def _joint(path: Path, name: str, joint: Element, ends: tuple[str, str], frame: 
                          for what, unit in DISSIPATION.items())
     left_out = [words.format(value) for key, words in LIMITS.items()
                 if limit is not None and (value := read_number(limit.get(key)) or 0.0) > 0.0]
-    return Joint(name, KINDS[kind], *ends, point_of(frame), turned, is_limited, damping, friction,
-                 upper - lower if is_limited and limit is not None else np.inf, commands=tuple(commands),
-                 left_out=tuple(left_out))
+    low, high = (lower, upper) if is_limited and limit is not None else (-np.inf, np.inf)
+    speed = 0.0 if limit is None else read_number(limit.get("velocity")) or 0.0
+    return Joint(name, KINDS[kind], *ends, point_of(frame), turned, is_limited, damping, friction, high - low,
+                 commands=tuple(commands), left_out=tuple(left_out), low_rad=low, high_rad=high,
+                 speed_limit_rad_per_s=speed if speed > 0.0 else np.inf)
 
 
 def _axis(where: str, axis: Element | None) -> list[float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.rigid_body import inertia_about_axis
 from laconic.robot.importer.robot_tree import FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape, Surface
-from laconic.robot.importer.steering import Swivel, is_upright, swivel_of, turntables
+from laconic.robot.importer.steering import Swivel, is_upright, swivel_of, swivels, turntables
 from laconic.robot.importer.surfaces import is_frictionless
 from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
 from laconic.robot.importer.wheel_shape import Reach, chosen_shapes, reach_of, skew_of
@@ -112,10 +112,10 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     found, stands_for = _without_virtual(robot, found, answers, bool(named))
     remarks += stands_for
     wheels, casters = _apart(found, answers, bool(named))
-    if not wheels:
+    if not wheels and not (answers.with_hinges and any(_turns_as_told(each) for each in casters)):
         _check_known(robot, measured, are_all=True)
         raise BadInput(f"{robot.path}: {_all_swivel(casters)}")
-    _check_places(robot, wheels)
+    _check_places(robot, [*wheels, *casters] if answers.with_hinges else wheels)
     remarks += [f"joint {table.name} carries all wheels; it is held in its zero position" for table in tables]
     remarks += [remark for wheel in wheels for remark in wheel.remarks]
     turning = [wheel.joint for wheel in found]
@@ -198,15 +198,24 @@ def _without_virtual(robot: Robot, found: Sequence[FoundWheel], answers: Answers
 def _apart(found: Sequence[FoundWheel], answers: Answers, are_named: bool
            ) -> tuple[list[FoundWheel], list[FoundWheel]]:
     """The wheels, and those that only carry a load."""
-    if are_named:
+    if are_named and not answers.with_hinges:
         return [*found], []
     wheels: list[FoundWheel] = []
     casters: list[FoundWheel] = []
     for wheel in found:
         slides = (wheel.surface is not None and is_frictionless(wheel.surface)
                   and answer(answers.rollers, wheel.name) is None)
+        if slides and answers.with_hinges and not _turns_as_told(wheel):  # however its fork points
+            wheel = replace(wheel, swivel=None)
         (casters if wheel.swivel or slides else wheels).append(wheel)
+    if are_named:  # without friction or not
+        return [each for each in found if not each.swivel], [each for each in found if each.swivel]
     return (wheels, casters) if wheels or any(each.swivel for each in casters) else (casters, [])
+
+
+def _turns_as_told(wheel: FoundWheel) -> bool:
+    """Whether a wheel on a hinge moves a robot that has no other: it is steered, or driven."""
+    return wheel.is_steered or bool(wheel.joint.commands)
 
 
 def _all_swivel(casters: Sequence[FoundWheel]) -> str:
@@ -214,8 +223,8 @@ def _all_swivel(casters: Sequence[FoundWheel]) -> str:
     by_swivel = {each.swivel.name: each for each in casters if each.swivel}
     why = ", ".join(f"{each.name} {'is steered by' if each.is_steered else 'swivels freely about'} {name} "
                     f"({each.swivel.why})" for name, each in [*by_swivel.items()][:MOST_NAMED] if each.swivel)
-    return (f"all wheels swivel ({', '.join(each.name for each in casters)}): {why}; steering is not modelled; give "
-            "--wheel JOINT for those that are held")
+    return (f"all wheels swivel ({', '.join(each.name for each in casters)}): {why}; no "
+            "wheel is held to the body; give --wheel JOINT for those that are")
 
 
 def _check_places(robot: Robot, wheels: Sequence[FoundWheel]) -> None:
@@ -362,8 +371,10 @@ def _wheel(robot: Robot, joint: Joint, reach: Reach, answers: Answers, named: Co
     for above in robot.chain(joint):
         if above in named or above in tables or (swivel and above is swivel.joint) or above.kind not in (HINGE, SLIDE):
             continue
+        if answers.with_hinges and swivels(above):
+            continue
         remarks.append(f"joint {above.name} above {joint.name} is held in its zero position")
-    if swivel is not None:
+    if swivel is not None and not answers.with_hinges:
         what = "is steered by" if swivel.is_steered else "swivels freely about"
         remarks.append(f"{joint.name} {what} {swivel.name} ({swivel.why}), which is held in its zero position")
     remarks += parts.remarks
