@@ -22,10 +22,10 @@ Place = Callable[[int], str]
 """Names a sample by its index."""
 
 
-def modulus_of(unit: str, wrap: float | bool | None, turn: float, scale: float) -> float | None:
-    """Where a column begins again, in its own numbers; None: never, or not said. `turn`: ticks of one turn."""
+def modulus_of(wrap: float | bool | None, turn: float, scale: float) -> float | None:
+    """Where a column begins again, in its own numbers; None: never, or not said. `turn`: one turn in them."""
     if wrap is True:
-        return (turn if unit == TICK else TURNS[unit]) / abs(scale)
+        return turn / abs(scale)
     return None if wrap is None or wrap is False else float(wrap)
 
 

@@ -1,0 +1,75 @@
+"""A log for the wheels of one vehicle: as many of them, in its order, with its radii."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.robot.logs.log import MEMBERS, Log, wheels_of
+from laconic.robot.logs.wheel_names import places_by_name
+
+
+def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | None = None) -> Log:
+    """The log for a vehicle with these wheels; BadInput where it has another number of them.
+
+    A wheel without a motor may have no encoder either: its columns are NaN then. Frames on a bus have room for more
+    wheels than there are; those beyond the vehicle's must be silent. `radius_m`: of wheels without one of their own,
+    where the log has metres.
+    """
+    log = _by_name(_by_radius(log, wheels, radius_m), wheels)
+    there, count = wheels_of(log), len(wheels)
+    if there == count:
+        return log
+    parts = {member: getattr(log, member) for member in MEMBERS.values() if getattr(log, member) is not None}
+    if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in parts.values()):
+        return replace(log, **{member: value[:, :count] for member, value in parts.items()})
+    driven = [index for index, wheel in enumerate(wheels) if wheel.get("driven", True)]
+    places = list(range(there)) if log.is_ordered else driven
+    if there != len(places) or not set(driven) <= set(places) <= set(range(count)):
+        raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot, or "
+                       "driven = false for a wheel that the log has not")
+    at_places: dict[str, Any] = {member: spread(value, places, count) for member, value in parts.items()}
+    return replace(log, **at_places)
+
+
+def spread(values: np.ndarray, places: Sequence[int], count: int) -> np.ndarray:
+    """Columns at their places among so many; the others are NaN."""
+    found = np.full((len(values), count), np.nan)
+    found[:, places] = values
+    return found
+
+
+def _by_radius(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | None) -> Log:
+    """Angles of what each wheel rolled, by the radius that the scene gives it."""
+    if not log.by_radius:
+        return log
+    radii = np.array([wheel.get("radius_m") or radius_m or np.nan for wheel in wheels])
+    there = wheels_of(log)
+    if len(radii) != there:  # free wheels have no column: all others must have one radius
+        radii = np.full(there, radii[0]) if len(set(radii)) == 1 else np.full(there, np.nan)
+    if np.isnan(radii).any():
+        raise BadInput(f"{log.path}: has wheels in metres, and the scene's radii do not say of which wheels; give "
+                       "radius_m in the map, with which the robot makes metres of angles")
+    parts: dict[str, Any] = {member: getattr(log, member) / radii for member in log.by_radius}
+    remark = f"metres of the wheels became angles by the scene's radius of {', '.join(f'{r:g}' for r in set(radii))} m"
+    return replace(log, by_radius=(), remarks=(*log.remarks, remark), **parts)
+
+
+def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
+    """Columns in the scene's order where nobody gave one and the names of the wheels say where they are."""
+    if log.is_ordered or not log.wheel_names:
+        return log
+    places = places_by_name(log.wheel_names, wheels)
+    names = ", ".join(log.wheel_names)
+    if places is None:
+        return replace(log, wheel_names=(), remarks=(
+            *log.remarks, f"the columns {names} are taken for the scene's wheels in this order; name them in a map "
+            "if that is wrong"))
+    words = ", ".join(f"{name} is wheel {place + 1}" for name, place in zip(log.wheel_names, places, strict=True))
+    parts: dict[str, Any] = {member: spread(value, places, len(wheels)) for member in MEMBERS.values()
+                             if (value := getattr(log, member)) is not None}
+    return replace(log, wheel_names=(), is_ordered=True, remarks=(*log.remarks, f"by their names {words}"), **parts)
