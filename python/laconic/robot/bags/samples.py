@@ -52,13 +52,12 @@ class _Columns:
     stamps: array[int] = field(default_factory=lambda: array("q"))
     arrivals: array[int] = field(default_factory=lambda: array("q"))
     values: array[float] = field(default_factory=lambda: array("d"))
-    unstamped: int = 0
+    is_stamped: array[int] = field(default_factory=lambda: array("b"))
 
     def take(self, arrival: int, message: Any) -> None:
         """A message."""
         stamp = stamp_ns(message)
-        if not stamp:
-            self.unstamped += 1
+        self.is_stamped.append(stamp is not None and (stamp != 0 or arrival == 0))
         self.stamps.append(stamp or arrival)
         self.arrivals.append(arrival)
         self.values.extend([number_of(one, message) for one in self.fields])
@@ -67,11 +66,11 @@ class _Columns:
         """All of them, sorted; of two with one stamp the later one counts."""
         stamps, arrivals = np.array(self.stamps, np.int64), np.array(self.arrivals, np.int64)
         values = np.array(self.values, float).reshape(len(stamps), len(self.fields))
-        has_stamps = self.unstamped < len(stamps)
+        keep = np.array(self.is_stamped, bool)
+        has_stamps = bool(keep.any())
         remarks = []
-        if has_stamps and self.unstamped:
-            remarks.append(f"{self.topic}: {self.unstamped} of {len(stamps)} messages have no stamp and are left out")
-            keep = stamps != arrivals
+        if has_stamps and not keep.all():
+            remarks.append(f"{self.topic}: {int((~keep).sum())} of {len(keep)} messages have no stamp and are left out")
             stamps, arrivals, values = stamps[keep], arrivals[keep], values[keep]
         order = np.argsort(stamps, kind="stable")
         if (np.diff(order) < 0).any():

@@ -69,6 +69,14 @@ def refuse_jumps(path: Path, name: str, values: np.ndarray, turn: float, place: 
                    "wrap = false")
 
 
+def wrap_of(values: np.ndarray, unit: str) -> float | None:
+    """Where a column probably begins again; None where it never jumps, or by no usual size."""
+    turn = TURNS.get(unit, np.inf)
+    steps = np.diff(values)
+    jump = _jump(steps, float(np.ptp(values)) if len(values) else 0.0, turn)
+    return None if jump is None else _size(steps, jump, values, turn)
+
+
 def _jump(steps: np.ndarray, span: float, turn: float) -> int | None:
     """The first step that no wheel takes: half the range or more, against the steps around it."""
     moving = np.flatnonzero(steps)
