@@ -93,7 +93,7 @@ def bag_source(path: Path, columns: ColumnMap) -> Source:
     topics, clock = _on_one_clock({**read.topics, **{_key(pair): each for pair, each in read.frames.items()}},
                                   columns.stamps)
     _check_fields(path, columns, places, topics)
-    return _joined(path, columns, places, topics, is_geodetic, (*read.remarks, *clock))
+    return _joined(path, columns, places, topics, is_geodetic, (*columns.notes, *read.remarks, *clock))
 
 
 def _key(pair: Frames) -> str:
@@ -156,7 +156,7 @@ def _check_fields(path: Path, columns: ColumnMap, places: dict[str, Place], topi
     """BadInput for a field that no message has; joints may be in angles or in speeds."""
     blank: dict[str, str] = {}
     for name, place in places.items():
-        for (topic, index), label in zip(place.columns, place.labels, strict=True):
+        for (topic, index), label in zip(place.columns, place.labels, strict=not place.frames):
             if np.isnan(topics[topic].values[:, index]).all():
                 blank.setdefault(name, label)
     for name, label in blank.items():

@@ -42,6 +42,7 @@ class ColumnMap:
     channel: str = ""                  # CAN: of the bus that all frames are from, unless a quantity names its own
     keyword_column: int = 0            # with a word that says what the line holds; 0: all lines hold the same
     stamps: str = "header"             # bags: whose instants count, one of STAMPS
+    notes: tuple[str, ...] = ()        # on what is uncertain about a guess
     is_guess: bool = False             # nobody wrote it: the log's own names were taken for what they say
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,16 +11,16 @@ from laconic.errors import BadInput
 from laconic.robot.bags.messages import parts_of_message
 from laconic.robot.bags.recording import Topic
 from laconic.robot.bags.samples import TF, all_topics, is_ulog, recordings, sample_messages
-from laconic.robot.logs.bag_map import joints_of, pose_of, yaw_rate_of
 from laconic.robot.logs.bag_source import POSES, own_name
-from laconic.robot.logs.column_map import ColumnMap
+from laconic.robot.logs.column_map import ColumnMap, map_of
 from laconic.robot.logs.guess import TRUE, UNTRUE, Guess, words_of
-from laconic.robot.logs.quantity import Quantity
 from laconic.robot.logs.wheel_names import corner_of
+from laconic.scene.table import Table
 
 BEST = ("Odometry", "PoseStamped", "PoseWithCovarianceStamped", "PoseInFrame", "TransformStamped", "Pose2D", "Pose",
         "Transform", "NavSatFix", "PointStamped", "Point", "Vector3Stamped")
 NEVER = {"goal", "initialpose", "initial", "target", "plan", "cmd", "command"}
+VOLTAGES = "/wheel_voltages"     # of `laconic simulate --bag`
 OF_WHEELS = {"wheel", "wheels", "drive", "motor"}
 
 
@@ -43,23 +44,24 @@ def guess_bag(path: Path) -> Guess:
     _joints(found, path, topics)
     _pose(found, topics)
     _imu(found, topics)
+    if VOLTAGES in topics and found.wheels:
+        found.entries["voltage"] = {"columns": [f"{VOLTAGES}.data[{index}]" for index in range(len(found.wheels))],
+                                    "optional": True}
+        found.meaning[VOLTAGES] = "voltage [V]"
     return found
 
 
 def map_of_bag(path: Path) -> ColumnMap:
     """The map that is guessed where nobody gave one; BadInput says what the recording lacks."""
     guess = guess_bag(path)
-    quantities: dict[str, Quantity] = {"time": Quantity("time", (), ("s",))}
-    if joints := guess.entries.get("joints"):
-        quantities |= joints_of(joints, guess.wheels, is_ordered=False)
-    if topic := guess.entries.get("pose"):
-        quantities["pose"] = pose_of(topic)
-    if topic := guess.entries.get("imu"):
-        quantities["yaw_rate"] = yaw_rate_of(topic, is_optional=True)
-    if len(quantities) == 1 or not joints:
+    wheels = {"joints", "wheel_angle", "wheel_speed"} & set(guess.entries)
+    if not wheels:
         what = guess.missing[0] if guess.missing else "no topic of a usual type"
         raise BadInput(f"{path}: {what}; give its map with --map (`laconic logs {path.name}` shows its topics)")
-    return ColumnMap(path, "bag", "bag", ",", 0, 0, ".", quantities, is_guess=True)
+    found = map_of(Table(path, "", guess.entries))
+    quantities = {name: replace(each, wheels=(), is_optional=each.is_optional or name == "yaw_rate")
+                  for name, each in found.quantities.items()}
+    return replace(found, name="bag", quantities=quantities, is_guess=True, notes=tuple(guess.notes))
 
 
 def _joints(found: Guess, path: Path, topics: Mapping[str, Topic]) -> None:

@@ -33,6 +33,10 @@ def corner_of(name: str) -> tuple[str, str]:
 
 def places_by_name(names: Sequence[str], wheels: Sequence[Mapping[str, Any]]) -> list[int] | None:
     """For each name the index of its wheel; None where names and places do not say it without doubt."""
+    numbers = [re.findall(r"\d+", name) for name in names]
+    if all(len(each) == 1 for each in numbers) and sorted(int(each[0]) for each in numbers) == list(
+            range(1, len(wheels) + 1)):
+        return [int(each[0]) - 1 for each in numbers]
     found: list[int] = []
     for name in names:
         end, side = corner_of(name)
