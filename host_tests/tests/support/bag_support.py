@@ -130,7 +130,8 @@ def rosbag1(path: Path, rows: Sequence[Row], messages: Messages) -> Path:
     return path
 
 
-def rosbag2(path: Path, rows: Sequence[Row], messages: Messages, storage: StoragePlugin = StoragePlugin.SQLITE3) -> Path:
+def rosbag2(path: Path, rows: Sequence[Row], messages: Messages,
+            storage: StoragePlugin = StoragePlugin.SQLITE3) -> Path:
     """As ROS 2 records it."""
     with Writer2(path, version=9, storage_plugin=storage) as bag:
         connections: dict[str, Any] = {}

@@ -46,7 +46,8 @@ def test_a_run_comes_back_with_the_errors_of_its_table(name, tmp_path, capsys):
         capsys.readouterr()
         assert run(["replay", str(log), str(tmp_path / "robot.toml"), "--inputs", "wheel-speeds", "--json"]) == 0
         errors.append(json.loads(capsys.readouterr().out)["runs"][0])
-    assert errors[0]["path_error"] == pytest.approx(errors[1]["path_error"], abs=1e-12) and errors[0]["path_error"] < 1e-5
+    assert errors[0]["path_error"] == pytest.approx(errors[1]["path_error"], abs=1e-12)
+    assert errors[0]["path_error"] < 1e-5
     assert errors[0]["heading_error_rad"] < 1e-9
 
 
@@ -130,6 +131,7 @@ def test_a_rosbag_without_its_metadata_is_read(tmp_path, capsys):
 
 def test_a_scene_without_odometry_states_so(tmp_path, capsys):
     text = driven(tmp_path).read_text()
-    (tmp_path / "none.toml").write_text(text[:text.index("[[vehicle.wheel]]")] + "[run]\nduration_s = 1.0\nstep_s = 0.1\n")
+    body = text[:text.index("[[vehicle.wheel]]")]
+    (tmp_path / "none.toml").write_text(f"{body}[run]\nduration_s = 1.0\nstep_s = 0.1\n")
     assert run(["simulate", str(tmp_path / "none.toml"), "--bag", str(tmp_path / "run.mcap")]) == 0
     assert "has no /odom and no /tf" in capsys.readouterr().err

@@ -140,7 +140,8 @@ def test_the_radius_of_the_robots_own_software_makes_angles_of_metres(tmp_path, 
     text = TEXT_MAP.replace("[wheel_angle]\n", '[wheel_angle]\nunit = "m"\nradius_m = 0.03\n')
     assert path_error(capsys, csv(tmp_path / "run.csv", rows), mapped(tmp_path, text)) < EXACT
     wrong = text.replace('unit = "m"\n', "")
-    assert "radius_m: has a meaning for lengths alone" in refused_log(capsys, tmp_path / "run.csv", mapped(tmp_path, wrong))
+    refusal = refused_log(capsys, tmp_path / "run.csv", mapped(tmp_path, wrong))
+    assert "radius_m: has a meaning for lengths alone" in refusal
 
 
 @pytest.mark.parametrize("has_heading", [True, False])
@@ -148,7 +149,7 @@ def test_a_tracker_beside_the_middle_is_brought_to_the_robot(has_heading, tmp_pa
     rows, (x, y, turn) = motion(), (0.2, -0.1, math.radians(30.0))
     cos, sin = np.cos(rows[:, 5]), np.sin(rows[:, 5])
     rows[:, 3:] += np.column_stack([cos * x - sin * y, sin * x + cos * y, np.full(len(rows), turn)])
-    mount = "mount = { x_m = 0.2, y_m = -0.1, heading_deg = 30 }" if has_heading else "mount = { x_m = 0.2, y_m = -0.1 }"
+    mount = f"mount = {{ x_m = 0.2, y_m = -0.1{', heading_deg = 30' if has_heading else ''} }}"
     columns = '["x", "y", "yaw"]' if has_heading else '["x", "y"]'
     log = csv(tmp_path / "run.csv", rows)
     assert path_error(capsys, log, mapped(tmp_path, text_map(pose=f"columns = {columns}\n{mount}"))) < EXACT
@@ -189,7 +190,7 @@ def test_several_sensors_of_one_quantity_are_averaged_and_compared(tmp_path, cap
     text = text_map(wheel_angle='columns = [["left a", "left b"], "right"]')
     found = replayed(capsys, log, mapped(tmp_path, text))
     assert found["runs"][0]["path_error"] < 1e-5
-    assert any("wheel_angle is the mean of 2 sensors, which differ by at most 0.02" in each for each in found["remarks"])
+    assert any("the mean of 2 sensors, which differ by at most 0.02" in each for each in found["remarks"])
 
 
 def test_latitude_and_longitude_are_positions(tmp_path, capsys):
@@ -232,8 +233,8 @@ GUESSED = [
 @pytest.mark.parametrize("names,quantity,unit", [each for each in GUESSED if each[1]])
 def test_columns_of_wheels_are_known_by_their_names(names, quantity, unit, tmp_path, capsys):
     count = np.arange(50.0)
-    log = csv(tmp_path / "run.csv", np.column_stack([0.02 * count, *(np.round(7 * count) + k for k in range(len(names) - 1))]),
-              names)
+    columns = [0.02 * count, *(np.round(7 * count) + k for k in range(len(names) - 1))]
+    log = csv(tmp_path / "run.csv", np.column_stack(columns), names)
     assert run(["logs", str(log), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["map"]
     assert found[quantity]["columns"] == list(names[1:]) and found[quantity]["unit"] == unit

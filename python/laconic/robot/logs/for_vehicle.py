@@ -72,4 +72,5 @@ def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
     words = ", ".join(f"{name} is wheel {place + 1}" for name, place in zip(log.wheel_names, places, strict=True))
     parts: dict[str, Any] = {member: spread(value, places, len(wheels)) for member in MEMBERS.values()
                              if (value := getattr(log, member)) is not None}
-    return replace(log, wheel_names=(), is_ordered=True, remarks=(*log.remarks, f"by their names {words}"), **parts)
+    ordered = [log.wheel_names[places.index(index)] if index in places else "" for index in range(len(wheels))]
+    return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True, remarks=(*log.remarks, f"by their names {words}"), **parts)

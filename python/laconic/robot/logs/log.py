@@ -41,7 +41,8 @@ class Log:
     pose_rows: np.ndarray | None = None     # the samples whose pose was recorded, None: all; others are between two
     remarks: tuple[str, ...] = ()           # what was left out of the file, or filled in
     by_radius: tuple[str, ...] = ()         # members that are in metres still: the scene's radius makes angles of them
-    wheel_names: tuple[str, ...] = ()       # of the columns, where the log names its wheels
+    wheel_names: tuple[str, ...] = ()       # of the columns, where their order is not known yet
+    column_names: tuple[str, ...] = ()      # of the joints of the scene's wheels, where the log names them
 
     @property
     def seen(self) -> np.ndarray:
