@@ -26,20 +26,19 @@ def command(logs: tuple[Path, ...], scene: str, map_path: Path | None, out: Path
             json_wanted: bool) -> None:
     """Compares the odometry of LOG..., recorded runs with a true pose, with SCENE, which comes last.
 
-    Parameters are freed one kind after another: the radius of all wheels, of each wheel, their distance, the place of
-    the tracker, the time lag between wheels and pose. What none of them explains is slip, or noise. Each kind gets its
-    share of the error (docs/bags.md).
+    Radius and distance of the wheels, place of the tracker and the time lag between wheels and pose each get their
+    share of the error; what none of them explains is slip, or noise (docs/bags.md).
     """
     from laconic.base.progress import progress_bar
     from laconic.robot.identify import audit_page
-    from laconic.robot.identify.audit import audit, stages_expected
+    from laconic.robot.identify.audit import STEPS, audit
     from laconic.robot.identify.exports import export
     from laconic.robot.logs import gather_logs
     from laconic.scene import read_scene
 
     given = read_scene(scene)
     runs, _ = gather_logs(logs, map_path)
-    with progress_bar("auditing", stages_expected()) as advance:
+    with progress_bar("auditing", STEPS) as advance:
         found = audit(given, runs, advance)
     for path in exports:
         write_text(path, export(found, path))

@@ -1,7 +1,7 @@
-"""Where the wheels' odometry and the true path part, and how much of that is radius, distance, marker, lag or slip.
+"""Where the wheels' odometry and the true path part, and how much of that is radius, distance, tracker, lag or slip.
 
-Parameters are freed one kind after another, and each kind gets the error that it takes away from what was left before.
-So a kind's share is what no kind before it explains; the order is from what every robot has to what few have.
+All causes are found together, as each of them can hide another. Then each one alone goes back to what the scene states:
+the error that comes back is its own. The shares are those of the squared errors, so that they add up.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.identify.geometry import geometry_of
+from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.rolling_evidence import run_of, stretch_errors
 from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
@@ -21,50 +22,55 @@ from laconic.robot.logs.for_vehicle import for_wheels
 from laconic.robot.logs.poses import at_times
 from laconic.robot.replay.measures import path_length
 from laconic.robot.replay.rolled_paths import roll
-from laconic.robot.replay.rolling import rolling_of
+from laconic.robot.replay.rolling import path_of, rolling_of
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
-MOST_LAG_S, COARSE_S, FINE_S = 0.4, 0.04, 0.005
-WORTH = 0.05            # of the error: a lag that takes away less is noise
-LEAST_MOVED = 0.02      # of the largest direction: in others the runs do not tell a gain
+MOST_LAG_S, COARSE_S, FINE_S = 0.5, 0.02, 0.001
+WINDOW_S, POINTS = 0.4, 600   # of the motions that are compared, and how many of them in each run
+WORTH = 0.05                  # of the difference in motion: a lag that takes away less is noise
+LEAST_MOVED = 0.02            # of the largest direction: in others the runs do not tell a gain
+STEPS = 3                     # of the progress bar
 DIRECTIONS = ("ahead", "to the left", "turn")
+RADIUS, DISTANCE, TRACKER, LAG = "radius of the wheels", "distance of the wheels", "place of the tracker", "time lag"
+FREE = {RADIUS: ("radius",), DISTANCE: ("distance",), TRACKER: ("place", "heading")}
+LEFT = "left: slip, noise of the pose, what the model lacks"
 
 
 @dataclass(frozen=True)
-class Stage:
-    """The error once one more kind of parameter is free."""
+class Cause:
+    """One kind of fault, with its part of the error."""
 
     name: str
-    error: float            # root mean square path error over the runs
+    share: float            # of the squared path error
+    alone: float            # path error that this cause makes alone
     words: str              # the values found
 
 
 @dataclass(frozen=True)
 class Audit:
-    """All stages, and what is left."""
+    """The causes, and what is left."""
 
     scene: Scene
     logs: list[Log]         # with the lag taken out
-    stages: list[Stage]     # the first one is nominal
-    study: Study            # the last fit
+    nominal: float          # path error, root mean square over the runs
+    found: float            # with all causes taken out
+    causes: list[Cause]
+    study: Study            # the fit of all of them
     lag_s: float | None     # of the true pose behind the wheels; None: not found
     gains: dict[str, float]  # true motion over that of the fitted wheels, in each direction that the runs tell
     spread: np.ndarray      # root mean square of the stretches' errors: ahead, left [m for 1 m], turn [rad for 1 m]
+    given: list[Log]        # the runs as they were recorded
 
     @property
     def fitted(self) -> Scene:
         """The scene with the values found."""
         return fitted_scene(self.scene, self.study.found)
 
-    def shares(self) -> list[tuple[str, float]]:
-        """Of each kind the part of the squared error that it takes away, and what is left."""
-        whole = self.stages[0].error ** 2
-        if not whole > 0.0:
-            return [("left", 0.0)]
-        parts = [(after.name, (before.error**2 - after.error**2) / whole)
-                 for before, after in zip(self.stages[:-1], self.stages[1:], strict=True)]
-        return [*parts, ("left: slip, noise of the pose, what the model lacks", self.stages[-1].error ** 2 / whole)]
+    @property
+    def left(self) -> float:
+        """The part of the squared error that no cause explains."""
+        return min(1.0, (self.found / self.nominal) ** 2) if self.nominal > 0.0 else 1.0
 
 
 def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lambda *_, **__: None) -> Audit:
@@ -75,45 +81,40 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     runs = [for_wheels(log, scene.vehicle["wheel"], scene.vehicle.get("wheel_radius_m")) for log in logs]
     for run in runs:
         run.needs("pose", "an audit")
-    stages = [Stage("nominal", error_of(scene, runs), "")]
-    free: tuple[str, ...] = ()
-    study: Study | None = None
-    for names in _kinds(scene, runs):
-        free = (*(name for name in free if name != "common-radius"), *names)
-        study = identify(scene, runs, geometry_of(scene, free))
-        advance()
-        error = error_of(fitted_scene(scene, study.found), runs)
-        if error < stages[-1].error * (1.0 - 1e-9):
-            stages.append(Stage(TITLES[names], error, in_words(study, names)))
-    assert study is not None
-    lag_s, moved = lag_of(fitted_scene(scene, study.found), runs)
+    lag_s = lag_of(scene, runs)
+    moved = runs if lag_s is None else [without_lag(run, lag_s) for run in runs]
     advance()
+    names = [name for name in (RADIUS, DISTANCE, TRACKER) if name != TRACKER or _tells_tracker(runs)]
+    study = identify(scene, moved, geometry_of(scene, [each for name in names for each in FREE[name]]))
+    advance()
+    fitted = fitted_scene(scene, study.found)
+    nominal, found = error_of(scene, runs), error_of(fitted, moved)
+    alone = {name: error_of(_with_nominal(study, FREE[name]), moved) for name in names}
     if lag_s is not None:
-        runs = moved
-        study = identify(scene, runs, geometry_of(scene, free))
-        stages.append(Stage("time lag", error_of(fitted_scene(scene, study.found), runs), f"{1e3 * lag_s:.0f} ms"))
-    gains, spread = leftovers(fitted_scene(scene, study.found), runs)
+        alone[LAG] = error_of(fitted, runs)
+    gains, spread = leftovers(fitted, moved)
     advance()
-    return Audit(scene, runs, stages, study, lag_s, gains, spread)
+    causes = _causes(study, alone, nominal, found, lag_s)
+    return Audit(scene, moved, nominal, found, causes, study, lag_s, gains, spread, runs)
 
 
-TITLES = {("common-radius",): "radius of all wheels", ("radius",): "radius of each wheel", ("distance",):
-          "distance of the wheels", ("place", "heading"): "place and heading of the tracker"}
+def _causes(study: Study, alone: dict[str, float], nominal: float, found: float, lag_s: float | None) -> list[Cause]:
+    own = {name: max(0.0, error**2 - found**2) for name, error in alone.items()}
+    whole, left = sum(own.values()), (found / nominal) ** 2 if nominal > 0.0 else 1.0
+    return [Cause(name, max(0.0, 1.0 - left) * own[name] / whole if whole > 0.0 else 0.0, float(np.sqrt(own[name])),
+                  f"{1e3 * (lag_s or 0.0):.0f} ms" if name == LAG else in_words(study, FREE[name])) for name in alone]
 
 
-def _kinds(scene: Scene, runs: Sequence[Log]) -> list[tuple[str, ...]]:
-    """What is freed, in this order."""
-    has_own = any(wheel.get("radius_m") for wheel in scene.vehicle["wheel"])
-    kinds: list[tuple[str, ...]] = [] if has_own else [("common-radius",)]
-    kinds += [("radius",), ("distance",)]
-    if all(run.has_heading and isinstance(run.pose_point, str) for run in runs):
-        kinds.append(("place", "heading"))
-    return kinds
+def _with_nominal(study: Study, groups: Sequence[str]) -> Scene:
+    """The fitted scene, where parameters of some groups have the values that the scene states."""
+    parameters = study.found.parameters
+    values = np.array([each.nominal if each.group in groups else value
+                       for each, value in zip(parameters.each, study.found.values, strict=True)])
+    return replace(study.scene, vehicle=parameters.vehicle(base_of(study.scene, parameters), values))
 
 
-def stages_expected() -> int:
-    """Steps of the progress bar."""
-    return len(TITLES) + 2
+def _tells_tracker(runs: Sequence[Log]) -> bool:
+    return all(run.has_heading and run.pose_point == "origin" for run in runs)
 
 
 def error_of(scene: Scene, runs: Sequence[Log]) -> float:
@@ -133,26 +134,46 @@ def in_words(study: Study, names: Sequence[str]) -> str:
     return ", ".join(words)
 
 
-def lag_of(scene: Scene, runs: Sequence[Log]) -> tuple[float | None, list[Log]]:
-    """(how late the true pose is, the runs with it taken out), or (None, the runs) where no lag is worth a word."""
-    def error(lag_s: float) -> float:
-        return error_of(scene, [without_lag(run, lag_s) for run in runs])
+def lag_of(scene: Scene, runs: Sequence[Log]) -> float | None:
+    """How late the true pose is: at which shift its speed and turn are most like those of the wheels, whatever their
+    size. None where no shift is worth a word."""
+    rolling = rolling_of(scene.core(), scene.vehicle, scene.path)
+    paths = [path_of(rolling.moved(run.rotation_rad(), run.pose_point), np.zeros(3)) for run in runs]
+    most = min(MOST_LAG_S, 0.1 * min(float(run.time_s[-1]) for run in runs))
 
-    shortest = min(float(run.time_s[-1]) for run in runs)
-    most = min(MOST_LAG_S, 0.1 * shortest)
-    known: dict[float, float] = {}
+    def unlike(lag_s: float) -> float:
+        parts = [_motions(run, path, lag_s, most) for run, path in zip(runs, paths, strict=True)]
+        rolled, true = (np.vstack([part[index] for part in parts]) for index in (0, 1))
+        left = 0.0
+        for one, other in zip(rolled.T, true.T, strict=True):
+            size, whole = float(one @ one), float(other @ other)
+            if size > 0.0 and whole > 0.0:
+                left += 1.0 - float(one @ other) ** 2 / (size * whole)
+        return left
 
-    def best(candidates: np.ndarray) -> float:
-        for each in candidates:
-            known.setdefault(round(float(each), 6), error(round(float(each), 6)))
-        return min(known, key=lambda lag: known[lag])
+    coarse = np.arange(-most, most + 1e-9, COARSE_S)
+    middle = float(coarse[np.argmin([unlike(float(each)) for each in coarse])])
+    fine = middle + np.arange(-COARSE_S, COARSE_S + 1e-9, FINE_S)
+    values = [unlike(float(each)) for each in fine]
+    found = round(float(fine[int(np.argmin(values))]), 6)
+    now = unlike(0.0)
+    if not min(values) < (1.0 - WORTH) * now or now < 1e-9 or abs(found) >= most - COARSE_S or found == 0.0:
+        return None
+    return found
 
-    middle = best(np.arange(-most, most + 1e-9, COARSE_S) + 0.0)
-    best(np.array([0.0]))
-    found = best(middle + np.arange(-COARSE_S, COARSE_S + 1e-9, FINE_S))
-    if known[found] > (1.0 - WORTH) * known[0.0] or abs(found) >= most - COARSE_S:
-        return None, list(runs)
-    return found, [without_lag(run, found) for run in runs]
+
+def _motions(run: Log, path: np.ndarray, lag_s: float, most_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """(way and turn of the wheels, of the true pose so much later) over short windows."""
+    assert run.pose is not None
+    seen, end = run.seen, float(run.time_s[-1])
+    window = min(WINDOW_S, 0.1 * end)
+    begin = np.linspace(most_s, end - most_s - window, POINTS)
+    found = []
+    for time, pose, shift in ((run.time_s, path, 0.0), (run.time_s[seen], run.pose[seen], lag_s)):
+        steps = at_times(begin + window + shift, time, pose) - at_times(begin + shift, time, pose)
+        way = np.hypot(steps[:, 0], steps[:, 1])
+        found.append(np.column_stack([way, steps[:, 2]]) if run.has_heading else way[:, None])
+    return found[0], found[1]
 
 
 def without_lag(log: Log, lag_s: float) -> Log:

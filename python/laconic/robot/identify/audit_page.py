@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from laconic.robot.identify.audit import Audit
+from laconic.robot.identify.audit import LEFT, Audit
 from laconic.robot.identify.report import as_numbers as numbers_of_study
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.rolled_paths import roll
@@ -18,19 +19,16 @@ COLOURS = {"true": "black", "nominal": "tab:red", "fitted": "tab:blue"}
 
 def as_text(found: Audit, picture: str | None = None) -> str:
     """A page in Markdown."""
-    first, last = found.stages[0].error, found.stages[-1].error
     lines = [f"# Audit of {found.scene.name}, from {counted(len(found.logs), 'run')}", "",
-             f"The wheels' odometry is off by **{100 * first:.3f} %** of the way with the scene's numbers, and by "
-             f"**{100 * last:.3f} %** with those found.", ""]
+             f"The wheels' odometry is off by **{100 * found.nominal:.3f} %** of the way with the scene's numbers, and "
+             f"by **{100 * found.found:.3f} %** with those found.", ""]
     if picture is not None:
         lines += [f"![{picture}]({picture})", ""]
-    lines += ["| free, one after another | path error [%] | share of the squared error [%] | found |",
-              "| --- " * 4 + "|",
-              f"| nothing: nominal | {100 * first:.3f} | – | – |"]
-    for stage, (_, share) in zip(found.stages[1:], found.shares(), strict=False):
-        lines.append(f"| {stage.name} | {100 * stage.error:.3f} | {100 * share:.1f} | {stage.words} |")
-    name, share = found.shares()[-1]
-    lines += [f"| {name} | – | {100 * share:.1f} | – |", "", "## What is left", ""]
+    lines += ["| cause | share of the squared error [%] | path error that it makes alone [%] | found |",
+              "| --- " * 4 + "|"]
+    lines += [f"| {cause.name} | {100 * cause.share:.1f} | {100 * cause.alone:.3f} | {cause.words} |"
+              for cause in found.causes]
+    lines += [f"| {LEFT} | {100 * found.left:.1f} | – | – |", "", "## What is left", ""]
     lines += [f"* {word}" for word in words_of_rest(found)]
     if remarks := remarks_of(found.logs):
         lines += ["", "## The logs", "", *(f"* {each}" for each in remarks)]
@@ -55,14 +53,15 @@ def words_of_rest(found: Audit) -> list[str]:
 
 def as_numbers(found: Audit) -> dict[str, Any]:
     """For JSON."""
-    return {"stages": [{"name": stage.name, "path_error": stage.error, "found": stage.words} for stage in found.stages],
-            "shares": dict(found.shares()), "lag_s": found.lag_s, "gains": found.gains,
+    return {"nominal": found.nominal, "found": found.found, "left": found.left,
+            "causes": [asdict(cause) for cause in found.causes],
+            "lag_s": found.lag_s, "gains": found.gains,
             "spread": dict(zip(SPREADS, found.spread.tolist(), strict=True)),
             "fit": numbers_of_study(found.study)}
 
 
 def draw(found: Audit, path: Path) -> None:
-    """True, nominal and fitted path of the longest run; the error that is left after each kind; what is left of it."""
+    """True, nominal and fitted path of the longest run; the share of each cause; the error along the run."""
     from laconic.pictures.plotting import figure, save
 
     index = int(np.argmax([len(log.time_s) for log in found.logs]))
@@ -80,12 +79,13 @@ def draw(found: Audit, path: Path) -> None:
     where.set(xlabel="x [m]", ylabel="y [m]", title=f"path of {log.stem}")
     where.legend(fontsize=8)
     along.set(xlabel="time [s]", ylabel="distance from the true path [mm]", title="along the run")
-    names = [stage.name for stage in found.stages]
-    how_much.barh(range(len(names)), [100.0 * stage.error for stage in found.stages], color="tab:gray")
-    for row, stage in enumerate(found.stages):
-        how_much.text(100.0 * stage.error, row, f" {100.0 * stage.error:.2f} %", va="center", fontsize=8)
-    how_much.set_yticks(range(len(names)), [name.replace(" of ", "\nof ", 1) for name in names], fontsize=8)
+    rows = [*((cause.name, cause.share, "tab:blue") for cause in found.causes), ("left", found.left, "tab:gray")]
+    for row, (_, share, colour) in enumerate(rows):
+        how_much.barh(row, 100.0 * share, color=colour)
+        how_much.text(max(0.0, 100.0 * share), row, f" {100.0 * share:.1f} %", va="center", fontsize=8)
+    how_much.set_yticks(range(len(rows)), [name.replace(" of ", "\nof ", 1) for name, _, _ in rows], fontsize=8)
     how_much.invert_yaxis()
     how_much.margins(x=0.2)
-    how_much.set(xlabel="path error [%]", title="left once this is found, too")
+    how_much.set(xlabel="share of the squared error [%]", title=f"{100 * found.nominal:.2f} % → "
+                 f"{100 * found.found:.2f} % of the way")
     save(picture, path)

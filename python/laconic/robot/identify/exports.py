@@ -83,16 +83,16 @@ def _mecanum(found: Audit) -> str:
     spread = float(np.ptp(radii) / radii.mean())
     note = [f"# The wheels' radii differ by {100 * spread:.1f} %, which this controller cannot state."]
     return "\n".join([
-        *_head(found, "#"), *(note if spread > WORTH_A_LINE else []), "mecanum_drive_controller:", "  ros__parameters:", "    kinematics:",
+        *_head(found, "#"), *(note if spread > WORTH_A_LINE else []), "mecanum_drive_controller:",
+        "  ros__parameters:", "    kinematics:",
         f"      wheels_radius: {radii.mean():.6g}",
         f"      sum_of_robot_center_projection_on_X_Y_axis: {reach:.6g}", ""])
 
 
 def _head(found: Audit, mark: str) -> list[str]:
-    first, last = found.stages[0].error, found.stages[-1].error
     runs = ", ".join(log.stem for log in found.logs[:6]) + (" …" if len(found.logs) > 6 else "")
     return [f"{mark} {found.scene.name}, by `laconic audit` from {runs}.",
-            f"{mark} Path error {100 * first:.3f} % nominal, {100 * last:.3f} % with these numbers."]
+            f"{mark} Path error {100 * found.nominal:.3f} % nominal, {100 * found.found:.3f} % with these numbers."]
 
 
 def header_text(found: Audit, path: Path) -> str:

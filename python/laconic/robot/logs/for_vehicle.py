@@ -73,4 +73,5 @@ def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
     parts: dict[str, Any] = {member: spread(value, places, len(wheels)) for member in MEMBERS.values()
                              if (value := getattr(log, member)) is not None}
     ordered = [log.wheel_names[places.index(index)] if index in places else "" for index in range(len(wheels))]
-    return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True, remarks=(*log.remarks, f"by their names {words}"), **parts)
+    return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True,
+                   remarks=(*log.remarks, f"by their names {words}"), **parts)
