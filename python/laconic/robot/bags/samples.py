@@ -19,6 +19,7 @@ from laconic.robot.bags.messages import field_of, stamp_ns
 from laconic.robot.bags.recording import GIVE, ULOG_MAGIC, Recording, Topic, first_bytes, parts_of
 
 TF, TF_STATIC = "/tf", "/tf_static"
+MOST_NS = 1 << 62       # about the year 2116
 AT_ONCE = 512          # messages between two moves of the progress bar
 
 Frames = tuple[str, str]
@@ -57,10 +58,14 @@ class _Columns:
     def take(self, arrival: int, message: Any) -> None:
         """A message."""
         stamp = stamp_ns(message)
+        values = [number_of(one, message) for one in self.fields]
+        instant = stamp or arrival
+        if not -MOST_NS < min(instant, arrival) <= max(instant, arrival) < MOST_NS:
+            raise ValueError(instant)
         self.is_stamped.append(stamp is not None and (stamp != 0 or arrival == 0))
-        self.stamps.append(stamp or arrival)
+        self.stamps.append(instant)
         self.arrivals.append(arrival)
-        self.values.extend([number_of(one, message) for one in self.fields])
+        self.values.extend(values)
 
     def samples(self) -> Samples:
         """All of them, sorted; of two with one stamp the later one counts."""
@@ -76,7 +81,7 @@ class _Columns:
         if (np.diff(order) < 0).any():
             remarks.append(f"{self.topic}: messages are not in the order of their stamps and were sorted")
         stamps, arrivals, values = stamps[order], arrivals[order], values[order]
-        last = np.append(np.diff(stamps) > 0, True)
+        last = np.append(np.diff(stamps) > 0, True)[:len(stamps)]
         if not last.all():
             remarks.append(f"{self.topic}: {int((~last).sum())} messages have the stamp of another one and are left "
                            "out")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +21,8 @@ def load_ulog(path: Path, names: Sequence[str] | None = None) -> Any:
     from pyulog import ULog
 
     try:
-        return ULog(str(path), names, disable_str_exceptions=True)
+        with redirect_stdout(io.StringIO()):  # it prints warnings of its own, and states the same as file_corruption
+            return ULog(str(path), names, disable_str_exceptions=True)
     except Exception:  # of the library: broken bytes have many kinds of errors
         raise BadInput(f"{path}: is no ULog that can be read; {GIVE}") from None
 
