@@ -135,3 +135,28 @@ def test_a_scene_without_odometry_states_so(tmp_path, capsys):
     (tmp_path / "none.toml").write_text(f"{body}[run]\nduration_s = 1.0\nstep_s = 0.1\n")
     assert run(["simulate", str(tmp_path / "none.toml"), "--bag", str(tmp_path / "run.mcap")]) == 0
     assert "has no /odom and no /tf" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("mode", ["--lockstep", "--free-run"])
+def test_a_rig_writes_what_its_node_sends(mode, tmp_path, capsys):
+    bag = tmp_path / "run.mcap"
+    assert run(["rig", "turtlebot3_burger", mode, "--steps", "1500", "--bag", str(bag), "--json"]) == 0
+    capsys.readouterr()
+    assert run(["replay", str(bag), "turtlebot3_burger", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["runs"][0]["path_error"] < 0.01
+    assert any("/joint_states: " in each for each in found["remarks"])
+
+
+def test_raw_frames_have_no_signals_for_a_bag(tmp_path, capsys):
+    assert run(["rig", "turtlebot3_burger", "--same-bits", "--bag", str(tmp_path / "run.mcap")]) == 2
+    assert "needs frames with signals" in capsys.readouterr().err
+
+
+def test_a_played_vehicle_is_written_while_it_plays(tmp_path, capsys):
+    bag = tmp_path / "run"
+    assert run(["play", "robotino2", "--listen", "0", "--drives", "odrive", "--duration", "0.3", "--bag", str(bag)]) == 0
+    capsys.readouterr()
+    assert run(["logs", str(bag), "--json"]) == 0
+    shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}
+    assert set(shown) == {"/ground_truth/odom", "/joint_states", "/odom", "/tf", "/imu"} and int(shown["/odom"]) > 5

@@ -71,13 +71,15 @@ class SqliteFile:
     def _read_topics(self) -> None:
         definitions: dict[str, tuple[str, str]] = {}
         with suppress(sqlite3.Error):  # there since ROS 2 Iron
-            definitions = {name: (FORMS.get(form, ""), str(text)) for name, form, text in self._base.execute(
+            definitions = {name: (FORMS.get(str(form), ""), str(text)) for name, form, text in self._base.execute(
                 "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions")}
         counts: dict[int, int] = {}
         with suppress(sqlite3.Error):
             counts = dict(self._base.execute("SELECT topic_id, count(*) FROM messages GROUP BY topic_id"))
         for key, name, kind, encoding in self._base.execute(
                 "SELECT id, name, type, serialization_format FROM topics"):
+            if not all(isinstance(each, str) for each in (name, kind, encoding)) or not isinstance(key, int):
+                continue  # a broken row
             form, text = definitions.get(kind, ("", ""))
             self._ids[key] = name
             self.topics[name] = Topic(name, kind, counts.get(key, 0) if counts else None, partial(
