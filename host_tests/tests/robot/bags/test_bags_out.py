@@ -140,7 +140,7 @@ def test_a_scene_without_odometry_states_so(tmp_path, capsys):
 @pytest.mark.parametrize("mode", ["--lockstep", "--free-run"])
 def test_a_rig_writes_what_its_node_sends(mode, tmp_path, capsys):
     bag = tmp_path / "run.mcap"
-    assert run(["rig", "turtlebot3_burger", mode, "--steps", "1500", "--bag", str(bag), "--json"]) == 0
+    assert run(["rig", "turtlebot3_burger", mode, "--steps", "2500", "--bag", str(bag), "--json"]) == 0
     capsys.readouterr()
     assert run(["replay", str(bag), "turtlebot3_burger", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -155,7 +155,8 @@ def test_raw_frames_have_no_signals_for_a_bag(tmp_path, capsys):
 
 def test_a_played_vehicle_is_written_while_it_plays(tmp_path, capsys):
     bag = tmp_path / "run"
-    assert run(["play", "robotino2", "--listen", "0", "--drives", "odrive", "--duration", "0.3", "--bag", str(bag)]) == 0
+    options = ["--listen", "0", "--drives", "odrive", "--duration", "0.3"]
+    assert run(["play", "robotino2", *options, "--bag", str(bag)]) == 0
     capsys.readouterr()
     assert run(["logs", str(bag), "--json"]) == 0
     shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}

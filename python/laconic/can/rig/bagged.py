@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import can
+import numpy as np
 
 from laconic.can.rig.link import Link
 from laconic.can.rig.wire import Frame, wire
@@ -15,22 +16,30 @@ from laconic.errors import BadInput
 from laconic.robot.bags.run_topics import RunTopics
 from laconic.robot.bags.writing import open_bag
 from laconic.scene import Scene
+from laconic.scene.ground import slips
 
 LOOK_US = 10_000     # between two instants of a played vehicle
 WHEELS_A_GROUP = 3
 
 
 class FrameTopics:
-    """Listens to a node's frames with signals: one instant once pose and all wheels have come anew."""
+    """Listens to a node's frames with signals: one instant once pose and all wheels have come anew. In free run it
+    sends no wheel speeds; without slip they follow from its pseudo-velocities."""
 
-    def __init__(self, topics: RunTopics, scene: Scene, id_base: int, now_s: Callable[[], float]):
+    def __init__(self, topics: RunTopics, scene: Scene, id_base: int, now_s: Callable[[], float], *, is_free: bool):
         self.topics, self.id_base, self.now_s = topics, id_base, now_s
+        self._by_nu = None
+        self._has_wheels = not is_free
+        if is_free and not slips(scene.vehicle):
+            core = scene.core()
+            self._by_nu = core.matrices(core.vehicle(scene.vehicle)).wheel_rows
         self._wheels = scene.wheel_count
         self._signals: dict[str, float] = {}
         self._due = self._expected()
 
     def _expected(self) -> set[str]:
-        return {"x_m", *(f"wheel_speed_rad_per_s[{number}]" for number in range(1, self._wheels + 1))}
+        wheels = range(1, self._wheels + 1) if self._has_wheels or self._by_nu is not None else ()
+        return {"x_m", *(f"wheel_speed_rad_per_s[{number}]" for number in wheels)}
 
     def take(self, message: can.Message) -> None:
         """A frame has passed."""
@@ -46,12 +55,16 @@ class FrameTopics:
 
     def _of(self, frame: Frame, data: bytes) -> dict[str, float]:
         """The signals of a frame; none of one with other contents."""
-        if frame.name not in ("POSE", "WHEEL_SPEED"):
+        if frame.name not in ("POSE", "WHEEL_SPEED", "NU") or (frame.name == "NU" and self._by_nu is None):
             return {}
         raw = frame.unpack(data)
         values = {name: number * frame.fields[name].scale for name, number in raw.items() if name in frame.fields}
         if frame.name == "POSE":
             return {"x_m": values["x"], "y_m": values["y"], "heading_rad": values["heading"]}
+        if frame.name == "NU":
+            assert self._by_nu is not None
+            speeds = self._by_nu @ np.array([values[f"nu_{number}"] for number in (1, 2, 3)])
+            return {f"wheel_speed_rad_per_s[{number}]": float(speed) for number, speed in enumerate(speeds, start=1)}
         first = WHEELS_A_GROUP * raw["group"] + 1
         return {f"wheel_speed_rad_per_s[{first + index}]": values[f"wheel_speed_{index + 1}"]
                 for index in range(WHEELS_A_GROUP) if first + index <= self._wheels}
@@ -72,7 +85,8 @@ def bagged(link: Link, scene: Scene, id_base: int, mode: str, path: Path | None)
         return (link.clock.now_us() - began_us) / 1e6 if mode == "free-run" else next(steps) * scene.run.step_s
 
     with open_bag(path) as bag:
-        link.listeners.append(FrameTopics(RunTopics(scene, bag), scene, id_base, now_s).take)
+        link.listeners.append(FrameTopics(RunTopics(scene, bag), scene, id_base, now_s,
+                                          is_free=mode == "free-run").take)
         yield
 
 
