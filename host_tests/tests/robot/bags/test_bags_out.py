@@ -144,7 +144,7 @@ def test_a_rig_writes_what_its_node_sends(mode, tmp_path, capsys):
     capsys.readouterr()
     assert run(["replay", str(bag), "turtlebot3_burger", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["runs"][0]["path_error"] < 0.01
+    assert found["runs"][0]["path_error"] < 0.03  # millimetres of POSE over some centimetres
     assert any("/joint_states: " in each for each in found["remarks"])
 
 
