@@ -39,7 +39,7 @@ class OutputBag(click.ParamType[Path]):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """The path, claimed for this option."""
-        from laconic.robot.bags.writing import check_bag
+        from laconic.robot.bags.run_topics import check_bag
 
         path, option = _path(value, param), _spelled(param)
         if path.suffix.lower() == ".mcap":

@@ -106,7 +106,7 @@ def test_a_recorder_that_was_killed_leaves_what_was_written(name, tmp_path, caps
     """The process dies without a chance to close its files."""
     bag, scene = tmp_path / name, driven(tmp_path)
     code = (f"import os, pathlib, laconic\nfrom laconic.robot.bags.run_topics import RunTopics, needed_signals\n"
-            f"from laconic.robot.bags.writing import open_bag\nscene = laconic.read_scene({str(scene)!r})\n"
+            f"from laconic.robot.bags.run_topics import open_bag\nscene = laconic.read_scene({str(scene)!r})\n"
             "run = laconic.simulate(scene, needed_signals(scene))\n"
             f"with open_bag(pathlib.Path({str(bag)!r})) as bag:\n    topics = RunTopics(scene, bag)\n"
             "    for k, time_s in enumerate(run.time_s[:400]):\n"

@@ -13,8 +13,7 @@ import numpy as np
 from laconic.can.rig.link import Link
 from laconic.can.rig.wire import Frame, wire
 from laconic.errors import BadInput
-from laconic.robot.bags.run_topics import RunTopics
-from laconic.robot.bags.writing import open_bag
+from laconic.robot.bags.run_topics import RunTopics, open_bag
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 

@@ -32,7 +32,7 @@ def command(logs: tuple[Path, ...], scene: str, map_path: Path | None, out: Path
     from laconic.base.progress import progress_bar
     from laconic.robot.identify import audit_page
     from laconic.robot.identify.audit import STEPS, audit
-    from laconic.robot.identify.exports import export
+    from laconic.robot.identify.audit_page import export
     from laconic.robot.logs import gather_logs
     from laconic.scene import read_scene
 

@@ -111,8 +111,7 @@ def signals_of_bag(scene: Scene) -> tuple[str, ...]:
 
 def write_bag(run: Trajectory, path: Path) -> None:
     """The run as topics."""
-    from laconic.robot.bags.run_topics import write_run
-    from laconic.robot.bags.writing import open_bag
+    from laconic.robot.bags.run_topics import open_bag, write_run
 
     with open_bag(path) as bag:
         topics = write_run(run, bag)

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput, reason_of
-from laconic.robot.bags.messages import decoder_of
-from laconic.robot.bags.recording import (
+from laconic.robot.bags.messages import (
     BAG_MAGIC,
     GIVE,
     MCAP_MAGIC,
@@ -22,6 +21,7 @@ from laconic.robot.bags.recording import (
     ZSTD_MAGIC,
     Recording,
     Topic,
+    decoder_of,
     first_bytes,
 )
 

@@ -103,7 +103,7 @@ def _key(pair: Frames) -> str:
 def _types(path: Path, columns: ColumnMap) -> dict[str, str]:
     """The type of each topic; of a ULog the topics have none."""
     if is_ulog(path):
-        from laconic.robot.bags.ulog import topics_of_ulog
+        from laconic.robot.bags.samples import topics_of_ulog
 
         return dict.fromkeys(topics_of_ulog(path), "")
     with recordings(path) as parts:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from laconic.robot.logs.for_vehicle import corner_of
 from laconic.robot.logs.units import LATITUDE, LONGITUDE
-from laconic.robot.logs.wheel_names import corner_of
 from laconic.robot.logs.wraps import wrap_of
 
 FEWEST_WHEELS, MOST_WHEELS = 2, 8
@@ -80,7 +80,7 @@ def _time(found: Guess, columns: Mapping[str, np.ndarray], texts: Mapping[str, s
                 found.entries["time"] = {"columns": [mate, name], "units": ["s", "ns"]}
                 found.meaning |= {mate: "time [s]", name: "time [ns]"}
                 return
-    from laconic.robot.logs.stamps import is_date
+    from laconic.robot.logs.sources import is_date
 
     dates = [name for name, text in texts.items() if is_date(text)]
     if dates:

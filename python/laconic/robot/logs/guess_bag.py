@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput
-from laconic.robot.bags.messages import parts_of_message
-from laconic.robot.bags.recording import Topic
+from laconic.robot.bags.messages import Topic, parts_of_message
 from laconic.robot.bags.samples import TF, all_topics, is_ulog, recordings, sample_messages
 from laconic.robot.logs.bag_source import POSES, own_name
 from laconic.robot.logs.column_map import ColumnMap, map_of
+from laconic.robot.logs.for_vehicle import corner_of
 from laconic.robot.logs.guess import TRUE, UNTRUE, Guess, words_of
-from laconic.robot.logs.wheel_names import corner_of
 from laconic.scene.table import Table
 
 BEST = ("Odometry", "PoseStamped", "PoseWithCovarianceStamped", "PoseInFrame", "TransformStamped", "Pose2D", "Pose",
@@ -27,7 +26,7 @@ OF_WHEELS = {"wheel", "wheels", "drive", "motor"}
 def topics_in(path: Path) -> dict[str, Topic]:
     """All topics by name; of a ULog with the number of their samples."""
     if is_ulog(path):
-        from laconic.robot.bags.ulog import topics_of_ulog
+        from laconic.robot.bags.samples import topics_of_ulog
 
         return {name: Topic(name, "", len(each.data["timestamp"]), lambda: bytes)
                 for name, each in sorted(topics_of_ulog(path).items())}

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot.bags.messages import parts_of_message
-from laconic.robot.bags.recording import is_bag
+from laconic.robot.bags.messages import is_bag, parts_of_message
+from laconic.robot.logs.for_vehicle import places_by_name
 from laconic.robot.logs.guess import Guess, guess_table, toml_text
 from laconic.robot.logs.text_table import number_of, rows_of, text_of
-from laconic.robot.logs.wheel_names import places_by_name
 
 SEPARATORS = (",", ";", "\t", "|", " ")
 LOOKED_AT = 40         # lines, for the form of a text
@@ -244,7 +243,7 @@ def lines_of_fields(path: Path, topic: str) -> list[str]:
     if not is_bag(path):
         raise BadInput(f"--fields {topic}: {path} has no topics; leave it out")
     if is_ulog(path):
-        from laconic.robot.bags.ulog import topics_of_ulog
+        from laconic.robot.bags.samples import topics_of_ulog
 
         data = topics_of_ulog(path).get(topic)
         fields = {} if data is None else data.data

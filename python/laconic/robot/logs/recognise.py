@@ -8,8 +8,8 @@ from pathlib import Path
 
 from laconic.base.paths import exists
 from laconic.errors import BadInput
-from laconic.robot.bags.recording import ENDINGS as OF_BAG
-from laconic.robot.bags.recording import OF_ROSBAG2, is_bag
+from laconic.robot.bags.messages import ENDINGS as OF_BAG
+from laconic.robot.bags.messages import OF_ROSBAG2, is_bag
 from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
 from laconic.robot.logs.guess_bag import map_of_bag
 from laconic.robot.logs.log import Log
