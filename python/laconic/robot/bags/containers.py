@@ -89,9 +89,9 @@ class SqliteFile:
         """In the order in which they were written."""
         wanted = [key for key, name in self._ids.items() if name in names]
         marks, taken = ",".join("?" * len(wanted)), 0
+        query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({marks})"  # marks are ? alone
         try:
-            for key, stamp, data in self._base.execute(
-                    f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({marks})", wanted):  # noqa: S608
+            for key, stamp, data in self._base.execute(query, wanted):
                 if not isinstance(stamp, int) or not isinstance(data, bytes):
                     continue
                 taken += 1

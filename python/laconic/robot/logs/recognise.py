@@ -11,7 +11,7 @@ from laconic.errors import BadInput
 from laconic.robot.bags.messages import ENDINGS as OF_BAG
 from laconic.robot.bags.messages import OF_ROSBAG2, is_bag
 from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
-from laconic.robot.logs.guess_bag import map_of_bag
+from laconic.robot.logs.inspection import map_of_bag
 from laconic.robot.logs.log import Log
 from laconic.robot.logs.read import read_log
 from laconic.robot.logs.text_table import text_of

@@ -117,7 +117,7 @@ def source_of(path: Path, columns: ColumnMap) -> Source:
 
         return bag_source(path, columns)
     if columns.format == "mat":
-        from laconic.robot.logs.mat_source import mat_source
+        from laconic.robot.logs.bag_source import mat_source
 
         return mat_source(path, columns)
     return _can_source(path, columns) if columns.format == "can" else _text_source(path, columns)
