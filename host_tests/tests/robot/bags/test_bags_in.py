@@ -90,6 +90,7 @@ def test_a_map_chooses_whose_instants_count(stamps, late_s, tmp_path):
     log = rosbag2(tmp_path / "run", drive(messages, late_ns=300_000_000), messages)
     (read,), _ = gather_logs([log], mapped(tmp_path, f'{USUAL}pose = "/mocap/pose"\nstamps = "{stamps}"\n'))
     first_s = 0.3 if late_s else 0.0
+    assert read.column_names == ("left_wheel", "right_wheel")
     assert read.pose[50] == pytest.approx(pose_at(first_s + 1.0 - late_s), abs=1e-4)
 
 

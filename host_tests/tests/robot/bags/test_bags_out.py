@@ -18,6 +18,7 @@ from rosbags.highlevel import AnyReader
 import laconic
 from bag_support import SCENE
 from laconic.cli.main import run
+from laconic.robot.bags.run_topics import RunTopics, needed_signals, open_bag
 
 INPUT = '[[input]]\nsignal = "voltage_V[{}]"\nkind = "steps"\nt_s = [0.0, 1.5, 3.0]\nvalue = {}\n'
 NAMES = ("run", "run.mcap")
@@ -161,3 +162,18 @@ def test_a_played_vehicle_is_written_while_it_plays(tmp_path, capsys):
     assert run(["logs", str(bag), "--json"]) == 0
     shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}
     assert set(shown) == {"/ground_truth/odom", "/joint_states", "/odom", "/tf", "/imu"} and int(shown["/odom"]) > 5
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_run_that_is_stopped_while_it_is_written_leaves_a_whole_recording(name, tmp_path, capsys):
+    scene, bag = laconic.read_scene(str(driven(tmp_path))), tmp_path / name
+    trajectory = laconic.simulate(scene, needed_signals(scene))
+    with pytest.raises(KeyboardInterrupt), open_bag(bag) as writer:
+        topics = RunTopics(scene, writer)
+        for k, time_s in enumerate(trajectory.time_s):
+            topics.take(time_s, {name: float(each[k]) for name, each in trajectory.columns.items()})
+            if k == 200:
+                raise KeyboardInterrupt
+    assert run(["logs", str(bag), "--json"]) == 0
+    shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}
+    assert set(shown.values()) == {"201"}

@@ -341,10 +341,11 @@ def _joined(path: Path, columns: ColumnMap, places: dict[str, Place], topics: di
     told = [*remarks, *(remark for each in topics.values() for remark in each.remarks),
             *(_age(each, name == main) for name, each in topics.items())]
     names = tuple(label.partition("[")[2].rstrip("]") or label for label in first.labels)
+    are_joints = leading in PER_WHEEL and not any(name.isdigit() or "." in name for name in names)
     return Source(path, time_s, raw, lambda row: f"the message of {main} at {time_s[row]:.6g} s", is_row,
                   lines=lambda rows: f"{len(rows)} messages of {main} are", remarks=tuple(filter(None, told)),
                   wheel_names=names if columns.is_guess and leading in PER_WHEEL else (), is_geodetic=is_geodetic,
-                  tells_gaps=False)
+                  column_names=names if are_joints and not columns.is_guess else (), tells_gaps=False)
 
 
 def _age(samples: Samples, is_main: bool) -> str:

@@ -48,7 +48,7 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     by_radius = tuple(member for name, member in MEMBERS.items()
                       if member in found and is_by_scene_radius(columns.quantities[name]))
     log = Log(path, columns.name, time - time[0], is_ordered=is_ordered, remarks=remarks, by_radius=by_radius,
-              wheel_names=source.wheel_names, **found)
+              wheel_names=source.wheel_names, column_names=source.column_names, **found)
     pose = next((each for each in sampled if each.name == "pose" and each.name in chosen.values), None)
     return log if pose is None else poses.with_pose(log, columns.quantities["pose"], pose, chosen.values["pose"],
                                                source.time_s, chosen.rows)

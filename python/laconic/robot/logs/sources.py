@@ -106,6 +106,7 @@ class Source:
     lines: Callable[[np.ndarray], str] | None = None   # names samples for remarks
     remarks: tuple[str, ...] = ()
     wheel_names: tuple[str, ...] = ()           # of the columns of wheels, where their order was guessed
+    column_names: tuple[str, ...] = ()          # of the wheels' joints, in the order of the map
     is_geodetic: bool = False                   # positions are latitude and longitude
     tells_gaps: bool = True                     # a blank sample is worth a remark
 
