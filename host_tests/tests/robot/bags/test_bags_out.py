@@ -168,12 +168,17 @@ def test_a_played_vehicle_is_written_while_it_plays(tmp_path, capsys):
 def test_a_run_that_is_stopped_while_it_is_written_leaves_a_whole_recording(name, tmp_path, capsys):
     scene, bag = laconic.read_scene(str(driven(tmp_path))), tmp_path / name
     trajectory = laconic.simulate(scene, needed_signals(scene))
-    with pytest.raises(KeyboardInterrupt), open_bag(bag) as writer:
-        topics = RunTopics(scene, writer)
-        for k, time_s in enumerate(trajectory.time_s):
-            topics.take(time_s, {name: float(each[k]) for name, each in trajectory.columns.items()})
-            if k == 200:
-                raise KeyboardInterrupt
+
+    def write() -> None:
+        with open_bag(bag) as writer:
+            topics = RunTopics(scene, writer)
+            for k, time_s in enumerate(trajectory.time_s):
+                topics.take(time_s, {name: float(each[k]) for name, each in trajectory.columns.items()})
+                if k == 200:
+                    raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write()
     assert run(["logs", str(bag), "--json"]) == 0
     shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}
     assert set(shown.values()) == {"201"}
