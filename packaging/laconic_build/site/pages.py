@@ -20,7 +20,7 @@ GROUPS = {
     "How to": ("how-to", "import", "scenes", "python", "c", "fmu", "fmu-fmpy", "fmu-simulink", "fmu-openmodelica",
                "fmu-dymola", "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep",
                "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "secure", "play", "play-canopen",
-               "play-odrive", "play-robomaster", "play-moteus", "logs", "sweep", "page", "release"),
+               "play-odrive", "play-robomaster", "play-moteus", "logs", "bags", "sweep", "page", "release"),
     "Explanation": ("performance", "soft-double", "batch", "learn", "derivatives", "control", "optimise",
                     "assurance", "enclosures", "error-estimate", "integrators", "friction", "sensors",
                     "real-robots", "paper", "architecture", "manual", "glossary"),
