@@ -16,17 +16,6 @@ laconic_status laconic_articulated_refuse_twist(int32_t hinge, const laconic_art
                   laconic_root(w.cosine * w.cosine + w.sine * w.sine), R(0));
 }
 
-/* How far the farthest hinge of the carriage lies from its centre of mass, in the larger measure |x| + |y|. */
-static real reach_of_hinges(const laconic_articulated_model *m) {
-    real reach = R(0);
-    for (int32_t b = 0; b < m->body_count; b++) {
-        const vector hinge = m->link[b].hinge;
-        const real far = magnitude(hinge.x) + magnitude(hinge.y);
-        if (m->link[b].parent == 0 && far > reach) reach = far;
-    }
-    return reach;
-}
-
 /* T and T' must be motions that the carriage's own wheels allow. A row whose lever is rounding alone is measured by the
  * vehicle's size, so that a turn about its own axle is none that slides. */
 static laconic_status check_against_wheels(const laconic_articulated_model *m, const articulated_drive *drive,
@@ -38,9 +27,7 @@ static laconic_status check_against_wheels(const laconic_articulated_model *m, c
                                    (magnitude(t.x) + magnitude(t.y) + m->length_m * magnitude(t.z)) +
                                magnitude(row.z * t.z); /* row.z and t.x may both be roundings of 0 */
             const real off = magnitude(dot(row, t));
-            if (off > R(10) * LACONIC_RANK_TOLERANCE * whole &&
-                off > R(10) * LACONIC_RANK_TOLERANCE *
-                          (whole + (magnitude(row.x) + magnitude(row.y)) * magnitude(t.z) * reach_of_hinges(m)))
+            if (off > R(10) * LACONIC_RANK_TOLERANCE * whole)
                 return refuse(why, LACONIC_TWIST_AGAINST_WHEELS,
                               (laconic_field)(k == 0 ? LACONIC_FIELD_OF_TWIST : LACONIC_FIELD_OF_TWIST_RATE), 0,
                               off / whole, R(0));

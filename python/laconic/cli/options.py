@@ -32,6 +32,23 @@ class InputPath(click.ParamType[Path]):
         return path
 
 
+class OutputBag(click.ParamType[Path]):
+    """A recording that a command writes: FILE.mcap, or a new folder."""
+
+    name = "bag"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path, claimed for this option."""
+        from laconic.robot.bags.run_topics import check_bag
+
+        path, option = _path(value, param), _spelled(param)
+        if path.suffix.lower() == ".mcap":
+            return outputs.claim_file(option, path, (".mcap",), ctx)
+        check_bag(option, path)
+        outputs.claims(ctx).claim(option, path)
+        return outputs.claim_folder(option, path)
+
+
 class SceneName(click.ParamType[str]):
     """A scene by its path or by its name; it stays as it was given, for `read_scene`.
 

@@ -10,7 +10,7 @@ from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
 from laconic.robot.logs import gather_logs
 from laconic.robot.logs.column_map import MAPS
-from laconic.robot.logs.read import for_wheels
+from laconic.robot.logs.for_vehicle import for_wheels
 
 WHEELS, ROWS = 4, 40
 

@@ -12,7 +12,7 @@ import pytest
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.robot.logs import gather_logs
-from laconic.robot.logs.read import for_wheels
+from laconic.robot.logs.for_vehicle import for_wheels
 from laconic.robot.replay.held_wheels import hold
 from laconic.robot.replay.measures import path_errors
 from laconic.robot.replay.rolling import rolling_of, rotations_of

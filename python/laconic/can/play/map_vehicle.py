@@ -170,6 +170,17 @@ class MapVehicle:
         velocity, yaw_rate = self.plant.plant.body_velocity()
         return float(np.hypot(*velocity)), abs(float(yaw_rate))
 
+    def signals(self) -> dict[str, float]:
+        """Pose, velocities and wheels, by the names of a run's signals."""
+        plant, now = self.plant, self.plant.pose()
+        (ahead, left), yaw_rate = plant.plant.body_velocity()
+        wheels = {f"{name}[{number}]": float(value) for name, values in (
+            ("wheel_angle_rad", plant.wheel_angles()), ("wheel_speed_rad_per_s", plant.wheel_speeds()))
+            for number, value in enumerate(values, start=1)}
+        return {"x_m": float(now.x_m), "y_m": float(now.y_m), "heading_rad": float(now.heading_rad),
+                "velocity_body_m_per_s[1]": float(ahead), "velocity_body_m_per_s[2]": float(left),
+                "yaw_rate_rad_per_s": float(yaw_rate), **wheels}
+
     def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
         """A fault of a drive, or of the station, begins, or ends."""
         if fault.wheel == 0:

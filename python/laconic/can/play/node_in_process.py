@@ -42,6 +42,20 @@ class InProcess(NodeVehicle):
         now = self.node.motion()
         return math.hypot(*now.velocity_m_per_s), abs(now.yaw_rate_rad_per_s)
 
+    def signals(self) -> dict[str, float]:
+        """Pose, velocities and driven wheels, by the names of a run's signals."""
+        now, library = self.node.motion(), self.node.library
+        found = {"x_m": float(now.x_m), "y_m": float(now.y_m), "heading_rad": float(now.heading_rad),
+                 "velocity_body_m_per_s[1]": float(now.velocity_m_per_s[0]),
+                 "velocity_body_m_per_s[2]": float(now.velocity_m_per_s[1]),
+                 "yaw_rate_rad_per_s": float(now.yaw_rate_rad_per_s)}
+        driven = [index for index, has_drive in enumerate(self.settings.driven, start=1) if has_drive]
+        for number, wheel in enumerate(driven):
+            if library.lib.laconic_library_drive_view(self.node.c, number, self._view):
+                found |= {f"wheel_angle_rad[{wheel}]": float(self._view.wheel_angle_rad),
+                          f"wheel_speed_rad_per_s[{wheel}]": float(self._view.wheel_speed_rad_per_s)}
+        return found
+
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of the controller; the node's own identifiers are not for it."""
         if not self.is_own(message):

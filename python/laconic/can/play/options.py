@@ -40,6 +40,7 @@ class PlayOptions:
     seed: int | None = None
     stop_within_s: float | None = None
     stop_distance_m: float | None = None
+    bag: Path | None = None
 
     @property
     def is_served(self) -> bool:

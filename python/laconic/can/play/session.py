@@ -16,6 +16,7 @@ from laconic.can.play.places import Place, Played, place_of
 from laconic.can.play.settings import DriveSettings, as_values
 from laconic.can.play.trouble import Trouble
 from laconic.can.play.vehicle import check_playable
+from laconic.can.rig.bagged import played_bag
 from laconic.can.rig.errors import BusDied, Interrupted
 from laconic.can.rig.interruption import Interruption
 from laconic.can.rig.link import Clock
@@ -40,13 +41,14 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     read_bus_faults(options.bus_faults, place.can_fail, options.random_seed)
     traffic, seconds, lost = Traffic(clock or Clock()), Seconds(), Lost()
     with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), \
-            logged(traffic, options.logs, lost), shown(traffic, scene, options) as moved:
+            logged(traffic, options.logs, lost), played_bag(vehicle, scene, options.bag) as recorders, \
+            shown(traffic, scene, options) as moved:
         traffic.may_go_on = signals.check
         trouble, journey = Trouble(place, options, vehicle, traffic, bus), Journey(vehicle)
         with place.playing(vehicle), trouble:
             for line in introduction(place, bus):  # the scene has been taken: nothing is refused any more
                 say(line)
-            ending = Loop(vehicle, trouble.bus, traffic, [*trouble.others, journey, *others]).run(
+            ending = Loop(vehicle, trouble.bus, traffic, [*trouble.others, journey, *recorders, *others]).run(
                 options.duration_s, moved)
             signals.number = 0  # it has been heard
     judgement = judged(scene, place, vehicle, traffic, seconds, ending, trouble)

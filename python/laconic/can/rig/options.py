@@ -44,6 +44,7 @@ class Options:
     key: Path | None
     junit: Path | None
     json_wanted: bool
+    bag: Path | None = None
 
 
 def read_id_base(given: str | None, scene: Scene | None) -> int:

@@ -10,7 +10,7 @@ import click
 from laconic.base.outputs import write_text
 from laconic.can.play.fault_kinds import KINDS as FAULTS
 from laconic.can.rig.choices import KINDS, LOGS, ON_BUS
-from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag, one_of
+from laconic.cli.options import InputPath, OutputBag, OutputFile, SceneName, check_step, goes_with, json_flag, one_of
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.scene import METHODS, read_scene
@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
+@click.option("--bag", type=OutputBag(), metavar="BAG",
+              help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")
 @click.option("--live", is_flag=True, help="Show the frames while it plays.")
 @click.option("--eds", type=OutputFile(".eds"), metavar="FILE",
               help="Write the EDS file of the CANopen drives, for the controller's configuration, and play nothing.")

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from laconic.can.rig.choices import KINDS, LOGS
-from laconic.cli.options import InputPath, OutputFile, SceneName, belongs_to, goes_with, json_flag, one_of, only_one
+from laconic.cli.options import (
+    InputPath,
+    OutputBag,
+    OutputFile,
+    SceneName,
+    belongs_to,
+    goes_with,
+    json_flag,
+    one_of,
+    only_one,
+)
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.scene import METHODS, Scene, read_scene
@@ -46,6 +56,8 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
 @click.option("--replay", type=InputPath(), help="Judge a log of a scaled lockstep run, without a node.")
 @click.option("--key", type=InputPath(), help="File with the key of a node that takes commands with codes alone.")
+@click.option("--bag", type=OutputBag(), metavar="BAG",
+              help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")
 @click.option("--live", is_flag=True, help="Show the signals while it runs.")
 @click.option("--stop", is_flag=True, help="Stop the node, whatever it does, and nothing else; no SCENE needed.")
 @click.option("--reset", is_flag=True, help="Stop the node and put its vehicle back to its start; no SCENE needed.")

@@ -12,7 +12,7 @@ import click
 import numpy as np
 
 from laconic.base.outputs import is_stdout, opened
-from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
+from laconic.cli.options import PICTURES, OutputBag, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.core.articulated import method_names
@@ -42,6 +42,8 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
 @click.option("--film", type=OutputFile(".svg"), metavar="F.svg",
               help="Draw a moving picture: the robot on its path, which a browser plays.")
+@click.option("--bag", type=OutputBag(), metavar="BAG",
+              help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
 @click.option("--errors", "errors_wanted", is_flag=True,
@@ -50,8 +52,8 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Enclose the exact solution and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool, enclose_wanted: bool,
-            json_wanted: bool) -> None:
+            plot: Path | None, film: Path | None, bag: Path | None, inputs_wanted: bool, errors_wanted: bool,
+            enclose_wanted: bool, json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
@@ -67,8 +69,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         not_with_hinges(given, errors_wanted, enclose_wanted)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
-                             *(drawn_with_hinges(given) if plot or film else ()),
-                             *(signals_to_enclose(given) if enclose_wanted else ())))
+                             *(drawn_with_hinges(given) if plot else ()),
+                             *(signals_to_enclose(given) if enclose_wanted else ()),
+                             *(signals_of_bag(given) if bag else ())))
     run = as_far_as_it_goes(given, tuple(signals))
     enclosure = enclosed(run) if enclose_wanted else None
     if out:
@@ -79,10 +82,12 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         simulation_picture(run, plot)
     if film:
         write_film(run, film)
+    if bag:
+        write_bag(run, bag)
     if json_wanted:
-        click.echo(json.dumps(summary(run, out, plot, film) | (enclosure.json if enclosure else {}), indent=1))
+        click.echo(json.dumps(summary(run, out, plot, film, bag) | (enclosure.json if enclosure else {}), indent=1))
     elif not (out and is_stdout(out)):
-        print_summary(run, out, plot, film, lines=enclosure.lines if enclosure else ())
+        print_summary(run, out, plot, film, bag, lines=enclosure.lines if enclosure else ())
     for each in run.limited:
         warn(f"{given.path}: {each.in_words(given.run.step_s)}")
     if run.least_margin and run.least_margin[0] < 0.0:
@@ -95,7 +100,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
     if run.refused:
-        raise ResultFails(f"{run.refused}{kept_in(out, plot, film)}")
+        raise ResultFails(f"{run.refused}{kept_in(out, plot, film, bag)}")
 
 
 def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool) -> None:
@@ -122,6 +127,23 @@ def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
         return simulate(scene, signals, progress=True, estimated=not scene.has_hinges)
     except RunRefused as cut_short:
         return cut_short.run
+
+
+def signals_of_bag(scene: Scene) -> tuple[str, ...]:
+    """The signals that the topics of a bag are made of."""
+    from laconic.robot.bags.run_topics import needed_signals
+
+    return needed_signals(scene)
+
+
+def write_bag(run: Trajectory, path: Path) -> None:
+    """The run as topics."""
+    from laconic.robot.bags.run_topics import open_bag, write_run
+
+    with open_bag(path) as bag:
+        topics = write_run(run, bag)
+    if not topics.has_odometry:
+        warn(f"--bag {path}: has no /odom and no /tf, as the wheels do not determine the motion")
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from laconic.core import Core
 from laconic.errors import BadInput
 from laconic.robot.identify.parameter import Vehicle
 from laconic.robot.logs import Log
+from laconic.robot.logs.log import Point
 from laconic.robot.replay.measures import LEAST_LENGTH_M, path_length
 from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import path_of, rolling_of
@@ -32,7 +33,7 @@ class Run:
 
     rotation_rad: np.ndarray
     pose: np.ndarray
-    point: str
+    point: Point
     taken: np.ndarray       # samples that are compared
     cuts: np.ndarray        # samples between which a stretch lies
     scale: float            # 1 / (length · √points)

@@ -91,7 +91,7 @@ def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[s
     sign = np.sign(share[np.argmax(np.abs(share))])
     named = [f"{p.name} {'larger' if s * sign > 0.0 else 'smaller'}"
              for p, s in zip(found.parameters.each, share, strict=True) if abs(s) >= PARTS * np.abs(share).max()]
-    known = f"{100.0 / np.sqrt(1.0 + strength):.0f} % of the uncertainty beforehand is left"
+    known = f"{100.0 / np.sqrt(1.0 + max(0.0, strength)):.0f} % of the uncertainty beforehand is left"
     if len(named) == 1:
         what = f"{named[0].rpartition(' ')[0]}: the runs hardly tell it"
     else:

@@ -12,7 +12,12 @@ from laconic.errors import BadInput
 
 PER_WHEEL = ("set_speed", "wheel_angle", "wheel_speed", "current", "voltage")
 POINTS = ("origin", "centre_of_mass")
+Point = str | tuple[float, float]
+"""One of POINTS, or x, y [m] in the body's frame."""
 LEAST_SAMPLES = 10
+MEMBERS = {"set_speed": "set_speed_rad_per_s", "wheel_angle": "wheel_angle_rad", "wheel_speed": "wheel_speed_rad_per_s",
+           "current": "current_A", "voltage": "voltage_V"}
+"""The member of a log that holds each quantity of the wheels."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +33,16 @@ class Log:
     current_A: np.ndarray | None = None
     voltage_V: np.ndarray | None = None
     pose: np.ndarray | None = None          # true x, y [m], heading [rad, unwrapped, NaN: not recorded] in the world
-    pose_point: str = "origin"              # which point of the vehicle the pose is of, one of POINTS
+    pose_point: Point = "origin"            # which point of the vehicle the pose is of
     yaw_rate_rad_per_s: np.ndarray | None = None  # of a gyro
     is_ordered: bool = False                # the map says which wheel of the scene each column is of
     moved: np.ndarray | None = None         # the displacements that the log has instead of a pose, summed: x, y, angle
     names: dict[str, str] = field(default_factory=dict)  # quantity → how the log calls its columns, for messages
     pose_rows: np.ndarray | None = None     # the samples whose pose was recorded, None: all; others are between two
     remarks: tuple[str, ...] = ()           # what was left out of the file, or filled in
+    by_radius: tuple[str, ...] = ()         # members that are in metres still: the scene's radius makes angles of them
+    wheel_names: tuple[str, ...] = ()       # of the columns, where their order is not known yet
+    column_names: tuple[str, ...] = ()      # of the joints of the scene's wheels, where the log names them
 
     @property
     def seen(self) -> np.ndarray:

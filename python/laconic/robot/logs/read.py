@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,43 +10,28 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot.logs.column_map import NUMBERED, YAW_RATE, Column, ColumnMap, Quantity, angle_unit
-from laconic.robot.logs.log import LEAST_SAMPLES, PER_WHEEL, Log, wheels_of
-from laconic.robot.logs.rows import Sampled, choose, fresh
-from laconic.robot.logs.text_table import TextTable, metadata_number, metadata_of, read_text
-from laconic.robot.logs.units import OF_QUANTITY, SPEED, TICK
+from laconic.robot.logs import poses
+from laconic.robot.logs.column_map import ColumnMap
+from laconic.robot.logs.for_vehicle import spread
+from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, Log
+from laconic.robot.logs.quantity import YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
+from laconic.robot.logs.rows import Sampled, choose
+from laconic.robot.logs.sources import Raw, Source, source_of
+from laconic.robot.logs.text_table import metadata_number, metadata_of
+from laconic.robot.logs.units import LATITUDE, OF_QUANTITY, OF_WHEEL, TICK, of_tread
 from laconic.robot.logs.wraps import TURNS, continuous, modulus_of, refuse_jumps
 
-MEMBERS = {"set_speed": "set_speed_rad_per_s", "wheel_angle": "wheel_angle_rad", "wheel_speed": "wheel_speed_rad_per_s",
-           "current": "current_A", "voltage": "voltage_V"}
 HALF_TURN = np.pi
-
-Raw = tuple[np.ndarray, list[str]]
-"""The columns of a quantity as they are recorded, NaN where nothing is, and their names for messages."""
-
-
-@dataclass(frozen=True)
-class Source:
-    """A table of samples, each at its instant; quantities of one table may be recorded at different ones."""
-
-    path: Path
-    time_s: np.ndarray
-    columns: Callable[[Quantity], Raw | None]
-    place: Callable[[int], str]                 # names a sample
-    is_row: np.ndarray | None = None            # which samples become rows; None: all
-    hold_s: float = 0.0                         # a younger sample is taken as it is
-    lines: Callable[[np.ndarray], str] | None = None   # names samples for remarks
-    remarks: tuple[str, ...] = ()
-
 
 def read_log(path: Path, columns: ColumnMap) -> Log:
     """A recorded run; BadInput names the file, line and column that cannot be used."""
-    source = _can_source(path, columns) if columns.format == "can" else _text_source(path, columns)
+    source = source_of(path, columns)
     reader = _Reader(source, columns)
     wheels = [reader.at_wheel(columns.quantities[name]) for name in PER_WHEEL if name in columns.quantities]
     others = [reader.yaw_rate(columns.quantities.get(YAW_RATE)), reader.pose(columns.quantities.get("pose"))]
     sampled = [each for each in (*wheels, *others) if each is not None]
-    chosen = choose(source.time_s, sampled, source.is_row, source.hold_s, source.lines)
+    chosen = choose(source.time_s, sampled, source.is_row, source.hold_s, source.lines,
+                    tells_gaps=source.tells_gaps)
     time = source.time_s[chosen.rows]
     _check_time(path, time, [source.place(int(row)) for row in chosen.rows])
     found: dict[str, Any] = {MEMBERS[name]: _spread_by(columns.quantities[name], values)
@@ -61,137 +45,13 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
         found["yaw_rate_rad_per_s"] = chosen.values[YAW_RATE][:, 0]
     remarks = (*source.remarks, *reader.remarks, *chosen.remarks)
     is_ordered = any(quantity.wheels for quantity in columns.quantities.values())
-    log = Log(path, columns.name, time - time[0], is_ordered=is_ordered, remarks=remarks, **found)
+    by_radius = tuple(member for name, member in MEMBERS.items()
+                      if member in found and is_by_scene_radius(columns.quantities[name]))
+    log = Log(path, columns.name, time - time[0], is_ordered=is_ordered, remarks=remarks, by_radius=by_radius,
+              wheel_names=source.wheel_names, column_names=source.column_names, **found)
     pose = next((each for each in sampled if each.name == "pose" and each.name in chosen.values), None)
-    return log if pose is None else _with_pose(log, columns.quantities["pose"], pose, chosen.values["pose"],
+    return log if pose is None else poses.with_pose(log, columns.quantities["pose"], pose, chosen.values["pose"],
                                                source.time_s, chosen.rows)
-
-
-def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
-    """The log for a vehicle with these wheels; BadInput where it has another number of them.
-
-    A wheel without a motor may have no encoder either: its columns are NaN then. Frames on a bus have room for more
-    wheels than there are; those beyond the vehicle's must be silent.
-    """
-    there, count = wheels_of(log), len(wheels)
-    if there == count:
-        return log
-    parts = {member: getattr(log, member) for member in MEMBERS.values() if getattr(log, member) is not None}
-    if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in parts.values()):
-        return replace(log, **{member: value[:, :count] for member, value in parts.items()})
-    driven = [index for index, wheel in enumerate(wheels) if wheel.get("driven", True)]
-    places = list(range(there)) if log.is_ordered else driven
-    if there != len(places) or not set(driven) <= set(places) <= set(range(count)):
-        raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot, or "
-                       "driven = false for a wheel that the log has not")
-    spread: dict[str, Any] = {member: _spread(value, places, count) for member, value in parts.items()}
-    return replace(log, **spread)
-
-
-def _spread(values: np.ndarray, places: Sequence[int], count: int) -> np.ndarray:
-    """Columns at their places among so many; the others are NaN."""
-    found = np.full((len(values), count), np.nan)
-    found[:, places] = values
-    return found
-
-
-def _text_source(path: Path, columns: ColumnMap) -> Source:
-    table = read_text(path, columns)
-
-    def raw(quantity: Quantity) -> Raw | None:
-        wanted = _numbered(quantity, table.names)
-        if quantity.first:
-            wanted = tuple(range(quantity.first, len(table.rows[0]) + 1))
-            if not wanted:
-                raise BadInput(f"{table.path}: line {table.lines[0]}: has {len(table.rows[0])} columns, none from "
-                               f"{quantity.first} on for {quantity.name}; correct the column map with --map")
-            _check_even(table)
-        if quantity.is_optional and (not wanted or any(isinstance(c, str) and c not in table.names for c in wanted)):
-            return None
-        indices = table.indices_of(wanted, quantity.name)
-        return (table.numbers(indices, quantity.name, may_be_blank=quantity.name != "time"),
-                [table.label(index) for index in indices])
-
-    found = raw(columns.quantities["time"])
-    assert found is not None
-    time = _time(path, columns.quantities["time"], found[0][:, 0], table.lines)
-    return Source(path, time, raw, lambda row: f"line {table.lines[row]}",
-                  lines=lambda rows: _lines(table, rows), remarks=table.remarks)
-
-
-def _time(path: Path, quantity: Quantity, values: np.ndarray, lines: Sequence[int]) -> np.ndarray:
-    """In seconds; BadInput for a line whose time does not grow."""
-    factor = quantity.scales[0] * OF_QUANTITY["time"][0][quantity.units[0]]
-    if isinstance(quantity.wrap, float):
-        values = values[:1] + np.concatenate([[0.0], np.cumsum(np.mod(np.diff(values), quantity.wrap))])
-    time: np.ndarray = values * factor
-    grows = np.diff(time) > 0.0
-    if not grows.all():
-        row = int(np.argmin(grows)) + 1
-        begins_again = quantity.wrap is None and values[row - 1] - values[row] > 0.5 * np.ptp(values)
-        wrap = "; a clock that begins again needs wrap under [time] in the map" if begins_again else ""
-        raise BadInput(f"{path}: line {lines[row]}: time does not grow ({time[row - 1]:.9g} s, then {time[row]:.9g} "
-                       f"s); needs at least {LEAST_SAMPLES} samples with increasing time, so remove the line or repair "
-                       f"it{wrap}")
-    return time
-
-
-def _lines(table: TextTable, rows: np.ndarray) -> str:
-    """Lines in words: "line 2 is", "lines 2 to 5 and 9 are"."""
-    runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-    words = [str(table.lines[run[0]]) if len(run) == 1 else f"{table.lines[run[0]]} to {table.lines[run[-1]]}"
-             for run in runs]
-    parts = words if len(words) < 4 else [*words[:2], f"{len(words) - 2} other stretches"]
-    if len(rows) == 1:
-        return f"line {words[0]} is"
-    return f"lines {' and '.join([', '.join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)} are"
-
-
-def _check_even(table: TextTable) -> None:
-    width = len(table.rows[0])
-    for line, row in zip(table.lines, table.rows, strict=True):
-        if len(row) != width:
-            raise BadInput(f"{table.path}: line {line}: has {len(row)} columns, the first line {width}; remove the "
-                           "line or repair it")
-
-
-def _numbered(quantity: Quantity, names: Sequence[str]) -> tuple[Column, ...]:
-    """The columns; a name with # stands for those of wheel 1, 2 … as far as they are there."""
-    column = quantity.columns[0] if len(quantity.columns) == 1 else None
-    if not isinstance(column, str) or NUMBERED not in column:
-        return quantity.columns
-    found: list[Column] = []
-    while (name := column.replace(NUMBERED, str(len(found) + 1))) in names:
-        found.append(name)
-    if not found and not quantity.is_optional:
-        return (column.replace(NUMBERED, "1"),)
-    return tuple(found)
-
-
-def _can_source(path: Path, columns: ColumnMap) -> Source:
-    from laconic.robot.logs.can_table import read_can  # brings cantools, which takes a while
-
-    table = read_can(path, columns)
-
-    def raw(quantity: Quantity) -> Raw | None:
-        names = [str(name) for name in _numbered(quantity, table.names_on(quantity.channel_of(0, table.channel)))]
-        found = [(name, column) for index, name in enumerate(names)
-                 if (column := table.column(quantity, index, name)) is not None]
-        if not found or len(found) < len(names):
-            if quantity.is_optional:
-                return None
-            raise BadInput(f"{path}: has no signal {quantity.columns[0]!r} (for {quantity.name}); correct the map")
-        return np.column_stack([column for _, column in found]), _labels(quantity, names)
-
-    return Source(path, table.time_s, raw, lambda row: table.places[row], table.is_row, table.hold_s,
-                  remarks=table.remarks)
-
-
-def _labels(quantity: Quantity, names: Sequence[str]) -> list[str]:
-    """The signals, with their channels where these differ."""
-    if len(quantity.channels) < 2:
-        return list(names)
-    return [f"{name} on channel {channel}" for name, channel in zip(names, quantity.channels, strict=True)]
 
 
 class _Reader:
@@ -215,11 +75,12 @@ class _Reader:
                     return None
                 raise BadInput(f"{self.source.path}: {quantity.name}: {label} is blank on all lines; record it, or "
                                "take it out of the map")
+        count = 3 if quantity.quaternion else len(labels)
         for key in ("scales", "offsets"):
-            if len(getattr(quantity, key)) not in (1, len(labels)):
+            if len(getattr(quantity, key)) not in (1, count):
                 raise BadInput(f"{self.map.path}: {quantity.name}.{key}: has {len(getattr(quantity, key))} entries for "
                                f"{len(labels)} columns; give one for each")
-        if quantity.wheels and len(quantity.wheels) != len(labels):
+        if quantity.wheels and len(quantity.wheels) != len(quantity.members or labels):
             raise BadInput(f"{self.map.path}: {quantity.name}.wheels: has {len(quantity.wheels)} entries for "
                            f"{len(labels)} columns; give one for each")
         return values, labels
@@ -241,26 +102,24 @@ class _Reader:
         unit = quantity.units[0]
         if quantity.name == "wheel_angle":
             values = self._continuous(quantity, values, labels)
-            factor = angle_unit(quantity, unit, self._figure)
-        elif quantity.name in ("wheel_speed", "set_speed"):
-            factor = SPEED[unit] / self._figure(quantity.gear_ratio)
-        else:
-            factor = OF_QUANTITY[quantity.name][0][unit]
+        is_turning = quantity.name in OF_WHEEL
+        factor = wheel_unit(quantity, self._figure) if is_turning else OF_QUANTITY[quantity.name][0][unit]
         with np.errstate(over="ignore"):
             out = values * (np.array(quantity.scales) * factor) + np.array(quantity.offsets)
-            return self._usable(quantity, _summed(out) if quantity.kind == "increments" else out)
+            out = _summed(out) if quantity.kind == "increments" else out
+            return self._usable(quantity, self._merged(quantity, out))
 
     def _continuous(self, quantity: Quantity, values: np.ndarray, labels: Sequence[str]) -> np.ndarray:
         """Angles without the jumps of a counter; BadInput for jumps that the map does not explain."""
         unit, scales = quantity.units[0], np.broadcast_to(quantity.scales, len(labels))
-        turn = self._figure(quantity.ticks_per_turn) if unit == TICK else TURNS[unit]
+        turn = self._turn(quantity)
         found = values.copy()
         for index, label in enumerate(labels):
             rows = np.flatnonzero(~np.isnan(values[:, index]))
             is_difference = quantity.kind == "increments"
             column = np.cumsum(values[rows, index]) if is_difference else values[rows, index]
             name, place = f"{quantity.name} {label}", partial(_place_of, self.source, rows)
-            modulus = modulus_of(unit, quantity.wrap, turn, scales[index])
+            modulus = modulus_of(quantity.wrap, turn, scales[index])
             if modulus is not None and is_difference:
                 found[rows, index] = np.remainder(values[rows, index] + 0.5 * modulus, modulus) - 0.5 * modulus
             elif modulus is not None:
@@ -270,32 +129,84 @@ class _Reader:
                 refuse_jumps(self.source.path, name, column, turn / abs(scales[index]), place)
         return found
 
+    def _turn(self, quantity: Quantity) -> float:
+        """One turn in the numbers of the column; infinite where the radius that makes lengths of it is the scene's."""
+        unit = quantity.units[0]
+        if unit == TICK:
+            return self._figure(quantity.ticks_per_turn)
+        length = of_tread(quantity.name, unit)
+        if length is None:
+            return TURNS[unit]
+        if quantity.radius_m is None and quantity.wrap is True:
+            raise BadInput(f"{self.map.path}: wheel_angle.wrap: is true, and one turn in {unit} needs radius_m; give "
+                           f"it, or the number of {unit} after which the column begins again")
+        return np.inf if quantity.radius_m is None else 2.0 * np.pi * quantity.radius_m / length
+
     def yaw_rate(self, quantity: Quantity | None) -> Sampled | None:
         """Of a gyro."""
         found = None if quantity is None else self._raw(quantity)
-        return None if quantity is None or found is None else self._usable(quantity, _scaled(quantity, found[0]))
+        return None if quantity is None or found is None else self._usable(quantity, poses.scaled(quantity, found[0]))
 
     def pose(self, quantity: Quantity | None) -> Sampled | None:
         """The true pose in the world, or its positions alone."""
         found = None if quantity is None else self._raw(quantity)
         if quantity is None or found is None:
             return None
-        scaled = _scaled(quantity, found[0])
+        values = self._in_si(quantity, found[0])
         if quantity.kind == "absolute":
-            if scaled.shape[1] > 2:
-                rows = np.flatnonzero(~np.isnan(scaled[:, 2]))
-                scaled[rows, 2] = np.unwrap(scaled[rows, 2])
-            return self._usable(quantity, scaled)
-        if scaled.shape[1] > 2:
-            self._fold_turns(scaled)
+            if values.shape[1] > 2:
+                rows = np.flatnonzero(~np.isnan(values[:, 2]))
+                values[rows, 2] = np.unwrap(values[rows, 2])
+                values = values if quantity.mount is None else poses.of_robot(values, quantity.mount)
+            if quantity.lag_s:
+                values = poses.earlier(self.source.time_s, values, quantity.lag_s)
+            return self._usable(quantity, values)
+        if values.shape[1] > 2:
+            self._fold_turns(values)
         if quantity.kind == "increments":
-            return self._usable(quantity, _summed(scaled))
-        blank = np.isnan(scaled).any(axis=1)
-        if (blank != np.isnan(scaled).all(axis=1)).any():
-            row = int(np.argmax(blank != np.isnan(scaled).all(axis=1)))
+            return self._usable(quantity, _summed(values))
+        blank = np.isnan(values).any(axis=1)
+        if (blank != np.isnan(values).all(axis=1)).any():
+            row = int(np.argmax(blank != np.isnan(values).all(axis=1)))
             raise BadInput(f"{self.source.path}: {self.source.place(row)}: pose has some of its columns alone, and a "
                            "displacement needs all; repair the line")
-        return self._usable(quantity, scaled)
+        return self._usable(quantity, values)
+
+    def _in_si(self, quantity: Quantity, values: np.ndarray) -> np.ndarray:
+        """Columns of a pose as x, y and, where it is known, heading."""
+        if quantity.quaternion:
+            values, remark = poses.with_heading(self.source.path, values, quantity.quaternion, self.source.place)
+            self.remarks += [remark] if remark else []
+        if LATITUDE in quantity.units or self.source.is_geodetic:
+            values, remark = poses.in_metres(values, quantity.units if LATITUDE in quantity.units else (LATITUDE, ""))
+            self.remarks.append(remark)
+            return values
+        return self._merged(quantity, poses.scaled(quantity, values))
+
+    def _merged(self, quantity: Quantity, values: np.ndarray) -> np.ndarray:
+        """The mean of the columns that measure one value; angles of wheels, which count from anywhere, are shifted to
+        agree before."""
+        if not quantity.members:
+            return values
+        found, first, time = [], 0, self.source.time_s
+        for count in quantity.members:
+            part = values[:, first:first + count]
+            first += count
+            if count > 1:
+                part = np.column_stack([_filled(time, column) for column in part.T])
+                both = part[~np.isnan(part).any(axis=1)]
+                if not len(both):
+                    raise BadInput(f"{self.source.path}: {quantity.name}: the columns that measure one value are never "
+                                   "there at one time; keep one of them in the map")
+                if quantity.name == "wheel_angle":
+                    part = part - (both.mean(axis=0) - both.mean())
+                    both = both - (both.mean(axis=0) - both.mean())
+                apart = float(np.ptp(both, axis=1).max())
+                size = float(np.ptp(both)) or 1.0
+                self.remarks.append(f"{quantity.name} is the mean of {count} sensors, which differ by at most "
+                                    f"{apart:.3g}, {100.0 * apart / size:.2g} % of the range")
+            found.append(part.mean(axis=1))
+        return np.column_stack(found)
 
     def _fold_turns(self, scaled: np.ndarray) -> None:
         """A difference of two headings that were within one turn is taken the shorter way around."""
@@ -305,6 +216,14 @@ class _Reader:
             scaled[wide, 2] = np.remainder(scaled[wide, 2] + HALF_TURN, 2.0 * HALF_TURN) - HALF_TURN
             self.remarks.append(f"pose turns by more than half a turn at {int(wide.sum())} samples (the first is "
                                 f"{self.source.place(int(np.argmax(wide)))}), which are taken the shorter way around")
+
+
+def _filled(time_s: np.ndarray, column: np.ndarray) -> np.ndarray:
+    """A column at all instants between its first value and its last."""
+    there = ~np.isnan(column)
+    if there.all() or not there.any():
+        return column
+    return np.interp(time_s, time_s[there], column[there], left=np.nan, right=np.nan)
 
 
 def _place_of(source: Source, rows: np.ndarray, index: int) -> str:
@@ -324,7 +243,7 @@ def _summed(increments: np.ndarray) -> np.ndarray:
 def _spread_by(quantity: Quantity, values: np.ndarray) -> np.ndarray:
     """Columns at the wheels that the map names."""
     wheels = quantity.wheels
-    return _spread(values, [wheel - 1 for wheel in wheels], max(wheels)) if wheels else values
+    return spread(values, [wheel - 1 for wheel in wheels], max(wheels)) if wheels else values
 
 
 def _figures(path: Path, columns: ColumnMap) -> Callable[[Any], float]:
@@ -340,15 +259,6 @@ def _figures(path: Path, columns: ColumnMap) -> Callable[[Any], float]:
         return metadata_number(file, rows, value)
 
     return figure
-
-
-def _scaled(quantity: Quantity, values: np.ndarray) -> np.ndarray:
-    """By the units and scales of columns that are no angles or speeds of a wheel."""
-    units = [known[unit] for unit, known in zip(quantity.units, OF_QUANTITY[quantity.name], strict=False)]
-    factor = np.array(quantity.scales) * np.array(units)
-    with np.errstate(over="ignore"):
-        found: np.ndarray = values * factor + np.array(quantity.offsets)
-        return found
 
 
 def _check_time(path: Path, time: np.ndarray, places: Sequence[str]) -> None:
@@ -387,38 +297,3 @@ def _signed(path: Path, found: dict[str, Any]) -> np.ndarray:
     sign = np.where(np.abs(speed) > quiet, np.sign(speed), 0.0)
     signed: np.ndarray = np.abs(found["current_A"]) * sign
     return signed
-
-
-def _with_pose(log: Log, quantity: Quantity, sampled: Sampled, values: np.ndarray, time_s: np.ndarray,
-               rows: np.ndarray) -> Log:
-    """The log with its true pose; a heading that was not recorded is NaN."""
-    log = replace(log, pose_point=quantity.point, pose_rows=fresh(sampled.values, rows))
-    if quantity.kind == "body-increments":
-        moved, poses = _placed_at(sampled.values, time_s, rows)
-        return replace(log, pose=poses, moved=moved)
-    if values.shape[1] == 2:
-        values = np.column_stack([values, np.full(len(values), np.nan)])
-    return replace(log, pose=values)
-
-
-def _placed_at(scaled: np.ndarray, time_s: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(displacements summed, poses) at rows, from displacements at some samples in the frame of the one before."""
-    there = np.flatnonzero(~np.isnan(scaled[:, 0]))
-    summed, poses = np.cumsum(scaled[there], axis=0), placed(scaled[there])
-    if np.array_equal(rows, there):
-        return summed, poses
-    return _at_times(time_s[rows], time_s[there], summed), _at_times(time_s[rows], time_s[there], poses)
-
-
-def _at_times(wanted_s: np.ndarray, known_s: np.ndarray, values: np.ndarray) -> np.ndarray:
-    return np.column_stack([np.interp(wanted_s, known_s, column) for column in values.T])
-
-
-def placed(moved: np.ndarray) -> np.ndarray:
-    """Poses from displacements in the body's frame: each begins in the frame of the sample before."""
-    steps = np.vstack([np.zeros(3), moved[1:]])
-    heading = np.cumsum(steps[:, 2])
-    before = heading - steps[:, 2]
-    cos, sin = np.cos(before), np.sin(before)
-    return np.column_stack([np.cumsum(cos * steps[:, 0] - sin * steps[:, 1]),
-                            np.cumsum(sin * steps[:, 0] + cos * steps[:, 1]), heading])

@@ -8,7 +8,10 @@ from pathlib import Path
 
 from laconic.base.paths import exists
 from laconic.errors import BadInput
+from laconic.robot.bags.messages import ENDINGS as OF_BAG
+from laconic.robot.bags.messages import OF_ROSBAG2, is_bag
 from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
+from laconic.robot.logs.inspection import map_of_bag
 from laconic.robot.logs.log import Log
 from laconic.robot.logs.read import read_log
 from laconic.robot.logs.text_table import text_of
@@ -16,6 +19,8 @@ from laconic.robot.logs.text_table import text_of
 ENDINGS = (".csv", ".csv.gz", ".txt", ".blf", ".asc")
 OF_CAN = (*ENDINGS[3:], ".log", ".trc", ".asc.gz", ".blf.gz", ".log.gz", ".trc.gz")
 OF_TEXT = ENDINGS[:3]
+OF_FORMAT = {"can": OF_CAN, "text": OF_TEXT, "bag": OF_BAG, "mat": (".mat",)}
+"""The endings that a map of each format looks for in a folder."""
 
 
 def natural(path: Path) -> list[object]:
@@ -27,8 +32,11 @@ def gather_logs(given: Sequence[Path], map_path: Path | None = None) -> tuple[li
     """(every run, files of folders that are none); a file that was named itself must be a run."""
     maps = [read_map(map_path)] if map_path else project_maps()
     logs, skipped = [], []
-    endings = ENDINGS if map_path is None else OF_CAN if maps[0].format == "can" else OF_TEXT
+    endings = (*ENDINGS, *OF_BAG) if map_path is None else OF_FORMAT[maps[0].format]
     for path in files_of(given, endings):
+        if map_path is None and is_bag(path):
+            logs.append(read_log(path, map_of_bag(path)))
+            continue
         if (columns := map_for(path, maps, is_given=map_path is not None)) is None:
             if path in given:
                 raise unknown(path, maps)
@@ -52,7 +60,7 @@ def files_of(given: Sequence[Path], endings: tuple[str, ...] = ENDINGS) -> list[
     found: list[Path] = []
     for path in given:
         if exists(path) and path.is_dir():
-            inside = [each for each in path.rglob("*") if each.is_file() and each.name.lower().endswith(endings)]
+            inside = [path] if set(OF_BAG) & set(endings) and is_bag(path) else _inside(path, endings)
             if not inside:
                 raise BadInput(f"{path}: holds no {_in_words(endings)}; give a folder with recorded runs")
             found += sorted(inside, key=natural)
@@ -61,8 +69,16 @@ def files_of(given: Sequence[Path], endings: tuple[str, ...] = ENDINGS) -> list[
     return list(dict.fromkeys(found))
 
 
+def _inside(folder: Path, endings: tuple[str, ...]) -> list[Path]:
+    """The logs in a folder; the files of a rosbag2 are one log, their own folder."""
+    found = [each for each in folder.rglob("*") if each.is_file() and each.name.lower().endswith(endings)]
+    return [each.parent if each.name.lower().endswith(OF_ROSBAG2) and (each.parent / "metadata.yaml").is_file()
+            else each for each in found]
+
+
 def _in_words(endings: tuple[str, ...]) -> str:
-    return {OF_CAN: "BLF, ASC, candump or TRC file", OF_TEXT: "CSV file"}.get(endings, "CSV file, BLF or ASC file")
+    return {OF_CAN: "BLF, ASC, candump or TRC file", OF_TEXT: "CSV file", OF_BAG: "rosbag, MCAP or ULog",
+            (".mat",): "MATLAB file"}.get(endings, "CSV file, BLF or ASC file, rosbag, MCAP or ULog")
 
 
 def map_for(path: Path, maps: Sequence[ColumnMap], *, is_given: bool) -> ColumnMap | None:
@@ -85,6 +101,9 @@ def _names(path: Path, columns: ColumnMap) -> list[str]:
 
 def unknown(path: Path, maps: Sequence[ColumnMap]) -> BadInput:
     """Why a file is no log: it cannot be read, or no map knows it."""
+    if path.suffix.lower() == ".mat":
+        return BadInput(f"{path}: is a MATLAB file, which needs its map: give it with --map (`laconic logs {path.name} "
+                        "-o map.toml` guesses one)")
     try:
         if not text_of(path).text.strip():
             return BadInput(f"{path}: is empty, so it has no samples; give a recorded run")
@@ -92,4 +111,4 @@ def unknown(path: Path, maps: Sequence[ColumnMap]) -> BadInput:
         return reason
     return BadInput(f"{path}: no map recognises it (known are {', '.join(each.name for each in maps)}); a CSV of "
                     "signals has the first column time_s and commas between columns, other columns need their map: "
-                    "give it with --map")
+                    "give it with --map (`laconic logs` guesses one)")

@@ -46,9 +46,9 @@ class Chosen:
 
 
 def choose(time_s: np.ndarray, quantities: Sequence[Sampled], is_row: np.ndarray | None, hold_s: float,
-           lines: Callable[[np.ndarray], str] | None) -> Chosen:
+           lines: Callable[[np.ndarray], str] | None, *, tells_gaps: bool = True) -> Chosen:
     """Rows at which all quantities are known. `hold_s`: a younger sample is taken as it is; `lines`: names samples for
-    remarks, None: there are none to make."""
+    remarks, None: there are none to make; `tells_gaps`: a remark states how much was filled in."""
     rows = np.arange(len(time_s)) if is_row is None else np.flatnonzero(is_row)
     remarks: list[str] = []
     kept = list(quantities)
@@ -62,7 +62,7 @@ def choose(time_s: np.ndarray, quantities: Sequence[Sampled], is_row: np.ndarray
                            f"{int(others.sum())} rows")
     usable = np.all([known[each.name] for each in kept], axis=0) if kept else np.full(len(rows), True)
     if lines is not None:
-        remarks += [_gaps(time_s, each) for each in kept if each.has_gaps]
+        remarks += [_gaps(time_s, each) for each in kept if each.has_gaps and tells_gaps]
         if not usable.all():
             remarks.append(f"{lines(rows[~usable])} left out: not every quantity has begun, or one has ended")
     rows = rows[usable]

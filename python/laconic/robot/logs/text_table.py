@@ -16,7 +16,8 @@ import numpy as np
 
 from laconic.base.text_file import TextOfFile, text_of_file
 from laconic.errors import BadInput, nearest_of, shown
-from laconic.robot.logs.column_map import Column, ColumnMap
+from laconic.robot.logs.column_map import ColumnMap
+from laconic.robot.logs.quantity import Column
 
 LONGEST_SHOWN = 40
 MOST_LISTED = 20
@@ -33,6 +34,7 @@ class TextTable:
     lines: list[int]
     decimal: str = "."
     remarks: tuple[str, ...] = ()
+    keyword_column: int = 0     # from 1; 0: no line has a word that says what it holds
 
     def indices_of(self, columns: Sequence[Column], quantity: str) -> list[int]:
         """Where columns stand, from 0; BadInput names the quantity that needs them."""
@@ -46,7 +48,7 @@ class TextTable:
     def index_of(self, column: Column, quantity: str) -> int:
         """Where a column stands, from 0; BadInput names the quantity that needs it."""
         if isinstance(column, int):
-            if column > len(self.rows[0]):
+            if column > max(map(len, self.rows[:1] if not self.keyword_column else self.rows)):
                 raise BadInput(f"{self.path}: line {self.lines[0]}: has {len(self.rows[0])} columns, no column "
                                f"{column} (for {quantity}); correct the column map with --map")
             return column - 1
@@ -65,10 +67,18 @@ class TextTable:
         """How messages name a column."""
         return repr(self.names[index]) if index < len(self.names) and self.names[index] else f"column {index + 1}"
 
-    def numbers(self, indices: Sequence[int], quantity: str, *, may_be_blank: bool = False) -> np.ndarray:
-        """Some columns as numbers, one row for each line; NaN for what is blank, where that is allowed."""
-        out = np.empty((len(self.rows), len(indices)))
+    def cells(self, indices: Sequence[int]) -> list[list[str]]:
+        """Some columns as text, one row for each line; empty where a line ends before."""
+        return [[texts[index].strip() if index < len(texts) else "" for index in indices] for texts in self.rows]
+
+    def numbers(self, indices: Sequence[int], quantity: str, *, may_be_blank: bool = False,
+                keyword: str = "") -> np.ndarray:
+        """Some columns as numbers, one row for each line; NaN for what is blank, where that is allowed, and for lines
+        with another keyword."""
+        out = np.full((len(self.rows), len(indices)), math.nan)
         for row, (line, texts) in enumerate(zip(self.lines, self.rows, strict=True)):
+            if keyword and keyword_of(texts, self.keyword_column) != keyword:
+                continue
             try:
                 values = [number_of(texts[index], self.decimal) for index in indices]
             except (ValueError, IndexError):
@@ -156,10 +166,30 @@ def read_text(path: Path, columns: ColumnMap) -> TextTable:
     if not numbered:
         raise BadInput(f"{path}: has no samples after {head} header lines; give a recorded run")
     names = [name.strip() for name in lines[columns.names_line - 1][1]] if columns.names_line else []
-    _refuse_surplus(path, numbered, "the line of names" if names else "the first line", len(names or numbered[0][1]))
+    if columns.keyword_column:
+        numbered = _with_keywords(path, columns, numbered)
+    else:
+        _refuse_surplus(path, numbered, "the line of names" if names else "the first line",
+                        len(names or numbered[0][1]))
     remark = text.remark()
     return TextTable(path, names, [row for _, row in numbered], [number for number, _ in numbered], columns.decimal,
-                     () if remark is None else (remark,))
+                     () if remark is None else (remark,), columns.keyword_column)
+
+
+def keyword_of(row: Sequence[str], column: int) -> str:
+    """The word that says what a line holds; empty where the line ends before it."""
+    return row[column - 1].strip() if column <= len(row) else ""
+
+
+def _with_keywords(path: Path, columns: ColumnMap,
+                   numbered: Sequence[tuple[int, list[str]]]) -> list[tuple[int, list[str]]]:
+    """The lines whose keyword a quantity names; BadInput for a keyword that no line has."""
+    wanted = {each.keyword for each in columns.quantities.values() if each.keyword}
+    there = dict.fromkeys(keyword_of(row, columns.keyword_column) for _, row in numbered)
+    for word in sorted(wanted - set(there)):
+        raise BadInput(f"{path}: no line has {shown(word)} in column {columns.keyword_column}; correct rows in the map "
+                       f"({nearest_of(word, there, f'the lines have {_listed(list(there))}')})")
+    return [(number, row) for number, row in numbered if keyword_of(row, columns.keyword_column) in wanted]
 
 
 def _refuse_surplus(path: Path, numbered: Sequence[tuple[int, list[str]]], first: str, width: int) -> None:

@@ -22,10 +22,10 @@ Place = Callable[[int], str]
 """Names a sample by its index."""
 
 
-def modulus_of(unit: str, wrap: float | bool | None, turn: float, scale: float) -> float | None:
-    """Where a column begins again, in its own numbers; None: never, or not said. `turn`: ticks of one turn."""
+def modulus_of(wrap: float | bool | None, turn: float, scale: float) -> float | None:
+    """Where a column begins again, in its own numbers; None: never, or not said. `turn`: one turn in them."""
     if wrap is True:
-        return (turn if unit == TICK else TURNS[unit]) / abs(scale)
+        return turn / abs(scale)
     return None if wrap is None or wrap is False else float(wrap)
 
 
@@ -67,6 +67,14 @@ def refuse_jumps(path: Path, name: str, values: np.ndarray, turn: float, place: 
     raise BadInput(f"{path}: {place(jump + 1)}: {name} jumps from {values[jump]:.9g} to {values[jump + 1]:.9g}, half "
                    f"of its range or more; give {remedy} under [wheel_angle] in the map if it begins again there, else "
                    "wrap = false")
+
+
+def wrap_of(values: np.ndarray, unit: str) -> float | None:
+    """Where a column probably begins again; None where it never jumps, or by no usual size."""
+    turn = TURNS.get(unit, np.inf)
+    steps = np.diff(values)
+    jump = _jump(steps, float(np.ptp(values)) if len(values) else 0.0, turn)
+    return None if jump is None else _size(steps, jump, values, turn)
 
 
 def _jump(steps: np.ndarray, span: float, turn: float) -> int | None:

@@ -17,6 +17,7 @@ import numpy as np
 from laconic.core import Core
 from laconic.errors import Refused
 from laconic.robot.logs import Log
+from laconic.robot.logs.log import Point
 
 STEP_S = 0.01
 DIVIDED = (1, 1.4, 2, 5, 16)   # of the step, where the core does not find the contact forces
@@ -114,7 +115,7 @@ def _held_vehicle(vehicle: Vehicle, holding: float, measured: np.ndarray) -> Veh
     return found
 
 
-def _run(core: Core, vehicle: Any, time: np.ndarray, speed: np.ndarray, point: str, step_s: float) -> Held:
+def _run(core: Core, vehicle: Any, time: np.ndarray, speed: np.ndarray, point: Point, step_s: float) -> Held:
     plant = core.plant(vehicle, "auto", step_s)
     slip, resting = plant.c.slip, core.input({})
     arms = _arms(plant)
@@ -139,8 +140,11 @@ def _arms(plant: Any) -> np.ndarray:
                      for i in range(friction.wheel_count)])
 
 
-def point_pose(plant: Any, point: str) -> np.ndarray:
-    """x, y, heading of the body's origin or of its centre of mass, as a log has it."""
+def point_pose(plant: Any, point: Point) -> np.ndarray:
+    """x, y, heading of the body's origin, of its centre of mass or of a point on it, as a log has it."""
     found = plant.pose
     x, y = (found.x_m, found.y_m) if point == "centre_of_mass" else (found.origin_x_m, found.origin_y_m)
+    if not isinstance(point, str):
+        cos, sin = np.cos(found.heading_rad), np.sin(found.heading_rad)
+        x, y = x + cos * point[0] - sin * point[1], y + sin * point[0] + cos * point[1]
     return np.array([x, y, found.heading_rad])

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from laconic.errors import BadInput
 from laconic.robot.logs.column_map import MAPS, ColumnMap, read_map
 from laconic.robot.logs.log import Log
 from laconic.robot.logs.read import read_log as read_any
@@ -46,6 +47,8 @@ def read_log(path: Path, columns: ColumnMap) -> Recording:
 
 def recording_of(log: Log) -> Recording:
     """A log with everything that the fit of friction needs; BadInput for one that lacks some of it."""
+    if log.by_radius:
+        raise BadInput(f"{log.path}: has wheels in metres, and {WHY} needs angles; give radius_m in the map")
     return Recording(log.stem, log.time_s, log.needs("set_speed_rad_per_s", WHY), log.needs("wheel_angle_rad", WHY),
                      log.needs("wheel_speed_rad_per_s", WHY), log.needs("current_A", WHY), camera_of(log))
 

@@ -47,13 +47,13 @@ class Rolling:
         found[:, measured] = self.origin @ np.linalg.pinv(rows) * self.radii_m[measured]
         return found
 
-    def moved(self, rotation_rad: np.ndarray, point: str = POINTS[0]) -> np.ndarray:
+    def moved(self, rotation_rad: np.ndarray, point: str | tuple[float, float] = POINTS[0]) -> np.ndarray:
         """Displacements of a point from sample to sample in the body's frame, one row each; NaN: not measured."""
         measured = ~np.isnan(rotation_rad).any(axis=0)
         steps: np.ndarray = rotation_rad @ self.per_rotation.T if measured.all() else (
             np.where(measured, rotation_rad, 0.0) @ self.from_wheels(measured).T)
-        if point == "centre_of_mass":
-            x, y = self.centre_of_mass
+        if point != POINTS[0]:
+            x, y = self.centre_of_mass if isinstance(point, str) else point
             steps = steps + steps[:, 2:] * np.array([-y, x, 0.0])
         return steps
 

@@ -1,0 +1,119 @@
+"""An audit gives each cause of an odometry error its share, and exports what it found."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bag_support import HALF_TRACK_M, RADIUS_M, scene_of
+from laconic.cli.main import run
+from laconic.robot.replay.rolling import path_of
+from recorded_data import recorded
+
+MOCAP = recorded("mecanum_mocap")
+
+
+def log_of(folder: Path, left: float = 1.0, right: float = 1.0, track: float = 1.0,
+           lag_s: float = 0.0) -> tuple[Path, Path]:
+    """A run with turns both ways of a robot whose numbers are off by these factors, and its map."""
+    time = 0.02 * np.arange(1500)
+    ahead, turn = 8.0 + 4.0 * np.sin(0.7 * time), 6.0 * np.sin(0.31 * time) + 3.0 * np.sin(1.3 * time)
+    speeds = np.column_stack([ahead - turn, ahead + turn])
+    angles = np.vstack([np.zeros(2), np.cumsum(speeds[:-1] * 0.02, axis=0)])
+    way = np.diff(angles, axis=0) * RADIUS_M * np.array([left, right])
+    moved = np.column_stack([way.mean(axis=1), 0.0 * way[:, 0], (way[:, 1] - way[:, 0]) / (2.0 * HALF_TRACK_M * track)])
+    pose = path_of(moved, np.zeros(3))
+    pose = np.column_stack([np.interp(time - lag_s, time, column) for column in pose.T])
+    lines = ["t,left,right,x,y,yaw", *(",".join(f"{value:.9g}" for value in row)
+                                       for row in np.column_stack([time, angles, pose]).tolist())]
+    (folder / "run.csv").write_text("\n".join(lines) + "\n")
+    (folder / "map.toml").write_text('[time]\ncolumn = "t"\n[wheel_angle]\ncolumns = ["left", "right"]\n[pose]\n'
+                                     'columns = ["x", "y", "yaw"]\n')
+    return folder / "run.csv", folder / "map.toml"
+
+
+def audited(capsys, log: Path, mapping: Path, scene: Path, *more: str) -> dict:
+    assert run(["audit", str(log), str(scene), "--map", str(mapping), "--json", *more]) == 0, capsys.readouterr().err
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("off,cause", [
+    ({"left": 1.03, "right": 1.03}, "radius of the wheels"), ({"left": 1.02, "right": 0.98}, "radius of the wheels"),
+    ({"track": 1.05}, "distance of the wheels")])
+def test_the_cause_gets_the_error(off, cause, tmp_path, capsys):
+    found = audited(capsys, *log_of(tmp_path, **off), scene_of(tmp_path))
+    shares = {each["name"]: each["share"] for each in found["causes"]}
+    assert max(shares, key=shares.get) == cause and shares[cause] > 0.6
+    assert found["found"] < 0.02 * found["nominal"]
+    assert sum(shares.values()) + found["left"] == pytest.approx(1.0)
+
+
+def test_a_late_pose_is_found_with_its_lag(tmp_path, capsys):
+    found = audited(capsys, *log_of(tmp_path, lag_s=0.1, track=1.05), scene_of(tmp_path))
+    assert found["lag_s"] == pytest.approx(0.1, abs=0.003)
+    assert found["found"] < 0.05 * found["nominal"]
+
+
+def test_a_robot_without_faults_is_said_to_have_none(tmp_path, capsys):
+    found = audited(capsys, *log_of(tmp_path), scene_of(tmp_path))
+    assert found["nominal"] < 1e-6 and found["lag_s"] is None
+    assert found["gains"]["ahead"] == pytest.approx(1.0, abs=1e-4)
+
+
+def test_a_page_and_every_export_hold_the_numbers(tmp_path, capsys):
+    log, mapping = log_of(tmp_path, left=1.02, right=0.99, track=1.05)
+    out, files = tmp_path / "out", [tmp_path / name for name in ("control.yaml", "robot.h", "fitted.toml")]
+    options = [word for path in files for word in ("--export", str(path))]
+    audited(capsys, log, mapping, scene_of(tmp_path), "-o", str(out), *options)
+    page = (out / "audit.md").read_text()
+    assert "![audit.png](audit.png)" in page and "distance of the wheels" in page
+    assert (out / "audit.png").read_bytes().startswith(b"\x89PNG")
+    given = {key: float(value) for key, value in re.findall(r"(\w+): ([\d.]+)$", files[0].read_text(), re.MULTILINE)}
+    assert given["wheel_radius"] == RADIUS_M and given["wheel_separation"] == pytest.approx(2.0 * HALF_TRACK_M)
+    assert given["left_wheel_radius_multiplier"] == pytest.approx(1.02, abs=2e-3)
+    assert given["right_wheel_radius_multiplier"] == pytest.approx(0.99, abs=2e-3)
+    assert given["wheel_separation_multiplier"] == pytest.approx(1.05, abs=2e-3)
+    header = files[1].read_text()
+    radius = float(re.search(r"ROBOT_WHEEL_1_RADIUS_M \(([\d.]+)\)", header)[1])
+    assert radius == pytest.approx(1.02 * RADIUS_M, rel=2e-3)
+    capsys.readouterr()
+    assert run(["replay", str(log), str(files[2]), "--map", str(mapping), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-3
+    if compiler := shutil.which("cc"):
+        subprocess.run([compiler, "-std=c99", "-Werror", "-fsyntax-only", "-x", "c", str(files[1])], check=True)
+
+
+def test_what_cannot_be_exported_or_audited_is_one_line(tmp_path, capsys):
+    log, mapping = log_of(tmp_path)
+    text = scene_of(tmp_path).read_text()
+    (tmp_path / "slips.toml").write_text(f"{text}[ground]\nfriction_coefficient = 0.5\n")
+    (tmp_path / "none.toml").write_text(mapping.read_text().partition("[pose]")[0])
+    for scene, chosen, words in (("slips.toml", mapping, "has a [ground] with friction"),
+                                 ("robot.toml", tmp_path / "none.toml", "has no pose, which an audit needs")):
+        assert run(["audit", str(log), str(tmp_path / scene), "--map", str(chosen)]) == 2
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1 and words in error
+
+
+@pytest.mark.skipif(not MOCAP.is_dir(), reason="recorded runs are not here")
+def test_a_recorded_mecanum_base_is_calibrated_by_its_map_alone(tmp_path, capsys):
+    scene, mapping = tmp_path / "mecanum.toml", tmp_path / "map.toml"
+    wheels = "".join(f'[[vehicle.wheel]]\nkind = "mecanum"\nx_m = {x}\ny_m = {y}\naxle_deg = -90\n'
+                     f"roller_deg = {45 if x * y > 0 else -45}\n" for x in (0.2, -0.2) for y in (0.169, -0.169))
+    body = scene_of(tmp_path).read_text().replace("= 0.033", "= 0.07")
+    scene.write_text(f"{body[:body.index('[[vehicle.wheel]]')]}{wheels}{body[body.index('[run]'):]}")
+    assert run(["logs", str(MOCAP / "run1.csv"), "--scene", str(scene), "-o", str(mapping)]) == 0
+    text = mapping.read_text()
+    mapping.write_text(re.sub("# ticks_per_turn.*", "ticks_per_turn = 42\ngear_ratio = 5", text))
+    capsys.readouterr()
+    found = audited(capsys, MOCAP / "run1.csv", mapping, scene)
+    assert found["nominal"] == pytest.approx(0.0217, abs=5e-4) and found["found"] < 0.003
+    heading = next(each for each in found["fit"]["parameters"] if each["name"] == "heading of the robot")
+    assert 0.0 < heading["value"] < math.radians(5.0)

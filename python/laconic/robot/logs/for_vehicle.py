@@ -1,0 +1,119 @@
+"""A log for the wheels of one vehicle: as many of them, in its order, with its radii. Names say where a wheel is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.robot.logs.log import MEMBERS, Log, wheels_of
+
+SIDES = {"left": 1.0, "right": -1.0}
+ENDS = {"front": 1.0, "rear": -1.0, "back": -1.0}
+SHORT = {"fl": ("front", "left"), "fr": ("front", "right"), "rl": ("rear", "left"), "rr": ("rear", "right"),
+         "bl": ("rear", "left"), "br": ("rear", "right"), "lf": ("front", "left"), "rf": ("front", "right"),
+         "lr": ("rear", "left"), "lb": ("rear", "left"), "rb": ("rear", "right"), "l": ("", "left"), "r": ("", "right"),
+         "lhs": ("", "left"), "rhs": ("", "right")}
+NEAR_M = 1e-6
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name: of left_wheelJoint left, wheel, joint."""
+    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)]
+
+
+def corner_of(name: str) -> tuple[str, str]:
+    """(front, rear or nothing, left, right or nothing) of a wheel's name."""
+    words = words_of(name)
+    end = next(("rear" if word in ("rear", "back") else "front" for word in words if word in ENDS), "")
+    side = next((word for word in words if word in SIDES), "")
+    if not (end and side):
+        short = next((SHORT[word] for word in words if word in SHORT), ("", ""))
+        end, side = end or short[0], side or short[1]
+    return end, side
+
+
+def places_by_name(names: Sequence[str], wheels: Sequence[Mapping[str, Any]]) -> list[int] | None:
+    """For each name the index of its wheel; None where names and places do not say it without doubt."""
+    numbers = [re.findall(r"\d+", name) for name in names]
+    if all(len(each) == 1 for each in numbers) and sorted(int(each[0]) for each in numbers) == list(
+            range(1, len(wheels) + 1)):
+        return [int(each[0]) - 1 for each in numbers]
+    found: list[int] = []
+    for name in names:
+        end, side = corner_of(name)
+        fitting = [index for index, wheel in enumerate(wheels)
+                   if (not side or SIDES[side] * wheel.get("y_m", 0.0) > NEAR_M)
+                   and (not end or ENDS[end] * wheel.get("x_m", 0.0) > NEAR_M)]
+        if not (end or side) or len(fitting) != 1:
+            return None
+        found.append(fitting[0])
+    return found if len(set(found)) == len(found) else None
+
+
+def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | None = None) -> Log:
+    """The log for a vehicle with these wheels; BadInput where it has another number of them.
+
+    A wheel without a motor may have no encoder either: its columns are NaN then. Frames on a bus have room for more
+    wheels than there are; those beyond the vehicle's must be silent. `radius_m`: of wheels without one of their own,
+    where the log has metres.
+    """
+    log = _by_name(_by_radius(log, wheels, radius_m), wheels)
+    there, count = wheels_of(log), len(wheels)
+    if there == count:
+        return log
+    parts = {member: getattr(log, member) for member in MEMBERS.values() if getattr(log, member) is not None}
+    if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in parts.values()):
+        return replace(log, **{member: value[:, :count] for member, value in parts.items()})
+    driven = [index for index, wheel in enumerate(wheels) if wheel.get("driven", True)]
+    places = list(range(there)) if log.is_ordered else driven
+    if there != len(places) or not set(driven) <= set(places) <= set(range(count)):
+        raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot, or "
+                       "driven = false for a wheel that the log has not")
+    at_places: dict[str, Any] = {member: spread(value, places, count) for member, value in parts.items()}
+    return replace(log, **at_places)
+
+
+def spread(values: np.ndarray, places: Sequence[int], count: int) -> np.ndarray:
+    """Columns at their places among so many; the others are NaN."""
+    found = np.full((len(values), count), np.nan)
+    found[:, places] = values
+    return found
+
+
+def _by_radius(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | None) -> Log:
+    """Angles of what each wheel rolled, by the radius that the scene gives it."""
+    if not log.by_radius:
+        return log
+    radii = np.array([wheel.get("radius_m") or radius_m or np.nan for wheel in wheels])
+    there = wheels_of(log)
+    if len(radii) != there:  # free wheels have no column: all others must have one radius
+        radii = np.full(there, radii[0]) if len(set(radii)) == 1 else np.full(there, np.nan)
+    if np.isnan(radii).any():
+        raise BadInput(f"{log.path}: has wheels in metres, and the scene's radii do not say of which wheels; give "
+                       "radius_m in the map, with which the robot makes metres of angles")
+    parts: dict[str, Any] = {member: getattr(log, member) / radii for member in log.by_radius}
+    remark = f"metres of the wheels became angles by the scene's radius of {', '.join(f'{r:g}' for r in set(radii))} m"
+    return replace(log, by_radius=(), remarks=(*log.remarks, remark), **parts)
+
+
+def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
+    """Columns in the scene's order where nobody gave one and the names of the wheels say where they are."""
+    if log.is_ordered or not log.wheel_names:
+        return log
+    places = places_by_name(log.wheel_names, wheels)
+    names = ", ".join(log.wheel_names)
+    if places is None:
+        return replace(log, wheel_names=(), remarks=(
+            *log.remarks, f"the columns {names} are taken for the scene's wheels in this order; name them in a map "
+            "if that is wrong"))
+    words = ", ".join(f"{name} is wheel {place + 1}" for name, place in zip(log.wheel_names, places, strict=True))
+    parts: dict[str, Any] = {member: spread(value, places, len(wheels)) for member in MEMBERS.values()
+                             if (value := getattr(log, member)) is not None}
+    ordered = [log.wheel_names[places.index(index)] if index in places else "" for index in range(len(wheels))]
+    return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True,
+                   remarks=(*log.remarks, f"by their names {words}"), **parts)
