@@ -37,7 +37,7 @@ extern "C" {
 
 /* -------------------------------------------------------------------------------- vehicle -- */
 
-/* What a body and its hinge have on ground with friction besides laconic_body. All zero: a pivot that carries pitch,
+/* A body and its hinge on ground with friction, in addition to laconic_body. All zero: a pivot that carries pitch,
  * without dry friction, stops and control. */
 typedef struct laconic_tree_hinge {
     laconic_real com_z_m;         /* height of the body's centre of mass; for normal loads only                */
@@ -59,7 +59,7 @@ typedef struct laconic_tree_hinge {
                                       0: a servo acts continuously, a loop looks at each step                  */
 } laconic_tree_hinge;
 
-/* What a wheel has besides laconic_wheel. All zero: load by statics, no scrub. */
+/* A wheel, in addition to laconic_wheel. All zero: load by statics, no scrub. */
 typedef struct laconic_tree_wheel {
     laconic_real load_N;         /* a measured normal load, which stays; of all wheels or of none              */
     laconic_real scrub_radius_m; /* a: a standing wheel resists turning about the vertical with μN a           */
@@ -112,7 +112,7 @@ typedef struct laconic_tree_vehicle {
 
 #define LACONIC_TREE_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_FIELD_OF_##IDENTIFIER = number,
 
-/* Numbers of a refusal's field besides those of laconic_articulated_field. The item: number of the body or wheel. */
+/* Numbers of a refusal's field that laconic_articulated_field does not have. The item: number of the body or wheel. */
 typedef enum laconic_tree_field {
     LACONIC_TREE_FIELDS(LACONIC_TREE_FIELD_NUMBER) LACONIC_TREE_FIELD_COUNT = 140
 } laconic_tree_field;
@@ -191,7 +191,7 @@ laconic_status laconic_tree_prepare(laconic_tree_model *model, const laconic_tre
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* What acts and is commanded over a step. All zero: motors with 0 V, servos that hold ψ = 0, prescribed hinges held. */
+/* Forces and commands over a step. All zero: motors with 0 V, servos that hold ψ = 0, prescribed hinges held. */
 typedef struct laconic_tree_input {
     laconic_articulated_input hinged; /* voltages, torques and forces as there; hinge_rate: of prescribed hinges, and
                                          the target rate of servos and loops. Accelerations and twist: not read  */
