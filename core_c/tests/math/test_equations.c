@@ -1,8 +1,8 @@
 /* Tests of polynomials.h: each is the function that its comment names, to the stated error or the rounding of the sum.
  * Compared with the host's library, and where that would cancel with Taylor's series. */
-#include "polynomials.h"
 #include "check.h"
 #include "least_norm.h"
+#include "polynomials.h"
 
 #define POINTS 200
 #define LAST_PLACE (double)LACONIC_EPSILON

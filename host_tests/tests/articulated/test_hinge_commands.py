@@ -144,7 +144,8 @@ def elsewhere(tmp_path: Path) -> dict[str, list[str]]:
             "replay": [str(log), "SCENE"], "identify": [str(log), "--scene", "SCENE", "-o", str(tmp_path / "f.toml")],
             "optimise": ["SCENE", "--free", "vehicle.mass_kg=1:2", "--goal", "min speed"],
             "sweep": ["SCENE", "--vary", "vehicle.mass_kg=1:2:3", "-o", str(tmp_path / "sweep")],
-            "report": ["--scene", "SCENE"], "demo": ["SCENE"], "ros2": ["SCENE"]}
+            "report": ["--scene", "SCENE"], "demo": ["SCENE"], "ros2": ["SCENE"],
+            "audit": [str(log), "SCENE"], "logs": [str(log), "--scene", "SCENE"]}
 
 
 def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> None:
@@ -156,7 +157,7 @@ def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("command", ["derive", "trim", "rig", "play", "replay", "identify",
-                                     "optimise", "sweep", "report", "demo", "ros2"])
+                                     "optimise", "sweep", "report", "demo", "ros2", "audit", "logs"])
 @pytest.mark.parametrize("name", ["f1tenth", "mir_like", "tugger_train", "wheel_loader"])
 def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, name: str, tmp_path: Path,
                                                                 capsys: pytest.CaptureFixture[str]) -> None:
@@ -167,7 +168,7 @@ def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, n
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
 
 
-@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"]])
+@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"], ["--bag", "x.mcap"]])
 def test_options_of_simulate_that_know_no_hinges_are_refused(option: list[str], tmp_path: Path,
                                                             monkeypatch: pytest.MonkeyPatch,
                                                             capsys: pytest.CaptureFixture[str]) -> None:

@@ -187,4 +187,4 @@ def test_without_sources_an_fmu_is_small(version: int, scalar: bool, tmp_path: P
     assert validate_fmu(str(fmu)) == []
     with zipfile.ZipFile(fmu) as archive:
         assert not [name for name in archive.namelist() if name.startswith("sources/")]
-    assert fmu.stat().st_size < 112_000 + 3_000 * (len(METHODS) - 8)  # all methods are inside
+    assert fmu.stat().st_size < 113_000 + 3_000 * (len(METHODS) - 8)  # all methods are inside

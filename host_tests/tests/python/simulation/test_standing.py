@@ -68,7 +68,8 @@ def test_a_run_without_data_of_the_ground_prints_none(tmp_path: Path, capsys: py
 
 
 @pytest.mark.parametrize(("parts", "vehicle", "words"), [
-    ((), {}, "nothing keeps it from tipping: it stands in one line (wheel 1 and wheel 2), and its centre of mass is 0"),
+    ((), {},
+     "nothing keeps it from tipping: it stands in one line (wheel 1 and wheel 2), and its centre of mass is above it"),
     ((), {"com_x_m": 0.055}, "it stands in one line (wheel 1 and wheel 2), and its centre of mass is 55 mm off"),
     ((table("[[vehicle.support]]", x_m=0.0005, y_m=0.0),), {},
      "it stands in one line (wheel 1, wheel 2 and support 1)"),

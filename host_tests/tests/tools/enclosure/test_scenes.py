@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 from flint import arb
 
-from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.errors import BadInput
-from laconic.scene import read_scene
+from laconic.scene import read_scene, rigid_scene_names
 from laconic.simulation import simulate
 from laconic.tools.enclosure.balls import ball, precision
 from laconic.tools.enclosure.readings import reading_of_core, reading_of_file
@@ -21,7 +20,7 @@ from laconic.tools.enclosure.study import enclose, state_signals, study_of
 from laconic.tools.verify.enclosed_result import bound_text
 
 SLIP = ("robotino_green", "robotino_grey", "skid_steer")
-SCENES = sorted(path.stem for path in scene_path("s1").parent.glob("*.toml") if path.stem not in SLIP)
+SCENES = sorted(set(rigid_scene_names()) - set(SLIP))
 PUCK = """name = "puck"
 [vehicle]
 mass_kg = 0.1

@@ -66,10 +66,10 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     belongs_to("--out", bool(out), "--inputs", "--errors")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
-        not_with_hinges(given, errors_wanted, enclose_wanted)
+        not_with_hinges(given, errors_wanted, enclose_wanted, bag)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
-                             *(drawn_with_hinges(given) if plot else ()),
+                             *(drawn_with_hinges(given) if plot or film else ()),
                              *(signals_to_enclose(given) if enclose_wanted else ()),
                              *(signals_of_bag(given) if bag else ())))
     run = as_far_as_it_goes(given, tuple(signals))
@@ -103,9 +103,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         raise ResultFails(f"{run.refused}{kept_in(out, plot, film, bag)}")
 
 
-def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool) -> None:
+def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool, bag: Path | None) -> None:
     """BadInput for what a run of a vehicle with hinges does not have yet."""
-    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted)):
+    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted), ("--bag", bag is not None)):
         if is_wanted:
             raise BadInput(f"{scene.path}: {option} does not take vehicles with hinges yet; leave it out")
 
