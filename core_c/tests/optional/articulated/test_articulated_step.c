@@ -203,7 +203,7 @@ static void coordinated_wheels_turn_a_car_on_the_middle_of_its_axle(void) {
     laconic_articulated_start start = start_at(0, 0, 0);
     start.yaw_rate_rad_per_s = REAL(0.5);
     for (int side = -1; side <= 1; side += 2) {
-        const laconic_articulated_input in = twist_of(REAL(1e-14), 0, side);
+        const laconic_articulated_input in = twist_of(1e-14, 0, side);
         laconic_articulated_state s = hinged_state(&m, &start, &in);
         const laconic_articulated_integrator i = hinged_integrator(&m, LACONIC_ARTICULATED_RK4, 0.01);
         ASSERT_TAKEN(laconic_articulated_step(&m, &i, &s, &in, &in, &refusal));
