@@ -54,8 +54,9 @@ static void queue_reply(const char *text) {
     }
 }
 
-/* Sends one line at a time and fetches the next frame when the line is sent; true: there may be more to send. */
-static bool send_some(void) {
+/* Sends one line at a time and fetches the next frame when the line is sent; true: there may be more to send. It is not
+ * inlined: its frame would take room on the stack below each step. */
+static bool __attribute__((noinline)) send_some(void) {
     laconic_frame frame;
     if (line_sent == line_length) {
         line_sent = 0;
