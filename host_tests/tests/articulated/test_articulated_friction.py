@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,15 +26,10 @@ from tree_runner import (
     vehicle_words,
 )
 
-from laconic.base.paths import SOURCE_DIR
-
-REFERENCE = SOURCE_DIR.parent / "shared" / "reference" / "articulated_friction.json"
-CASES: list[Case] = json.loads(REFERENCE.read_text(encoding="utf-8")) if REFERENCE.is_file() else []
+REFERENCE = Path(__file__).parents[1] / "data" / "articulated_friction_reference.json"
+CASES: list[Case] = json.loads(REFERENCE.read_text(encoding="utf-8"))
 TRAJECTORIES = {case["name"]: case for case in CASES if "segments" in case}
 SINGLE_STEPS = [(case["vehicles"][step["vehicle"]], step) for case in CASES for step in case.get("steps", [])]
-
-recorded = pytest.mark.skipif(not CASES, reason="no recorded references beside this checkout")
-
 
 # ---------------------------------------------------------------------------------- recorded references
 
@@ -59,21 +55,18 @@ def errors(name: str, step_s: float, real: str = "double") -> list[float]:
     return [float(np.abs(a - b).max()) for a, b in zip(end(name, step_s, real), expected, strict=True)]
 
 
-@recorded
 @pytest.mark.parametrize("name", TRAJECTORIES)
 def test_a_trajectory_ends_within_twice_the_prototypes_error_at_every_step(name: str) -> None:
     for step_s, listed in TRAJECTORIES[name]["prototype_error_by_step_s"].items():
         assert all(found <= 2 * limit for found, limit in zip(errors(name, float(step_s)), listed, strict=True)), step_s
 
 
-@recorded
 @pytest.mark.parametrize("name", TRAJECTORIES)
 def test_halving_the_step_halves_the_error(name: str) -> None:
     for coarse, fine in zip(errors(name, 1e-3), errors(name, 5e-4), strict=True):
         assert 1.7 <= coarse / fine <= 2.3
 
 
-@recorded
 @pytest.mark.parametrize("name", TRAJECTORIES)
 def test_single_precision_stays_near_double(name: str) -> None:
     for double, single in zip(end(name, 2e-3), end(name, 2e-3, "single"), strict=True):
@@ -86,7 +79,6 @@ def one_step(vehicle: Case, start: Case, segment: Case, step_s: float) -> tuple[
     return state_of(vehicle, rows[0]), state_of(vehicle, rows[1])
 
 
-@recorded
 @pytest.mark.parametrize("number", range(len(SINGLE_STEPS)))
 def test_a_single_step_is_the_recorded_minimiser(number: int) -> None:
     vehicle, step = SINGLE_STEPS[number]
@@ -129,7 +121,6 @@ def test_many_steps_satisfy_the_laws_by_an_independent_routine() -> None:
     assert worst_residual(range(1000, 3000), 25) <= 1e-9
 
 
-@recorded
 @pytest.mark.parametrize("name", TRAJECTORIES)
 def test_steps_along_a_recorded_trajectory_satisfy_the_laws(name: str) -> None:
     case = TRAJECTORIES[name]
@@ -218,7 +209,6 @@ def test_the_books_of_energy_close(seed: int) -> None:
     assert (last[5:12] >= -1e-12 * np.abs(last).max()).all()  # losses are losses
 
 
-@recorded
 @pytest.mark.parametrize("real", ["double", "single"])
 def test_rest_is_rest_to_the_last_bit(real: str) -> None:
     """After coasting to rest, and under a load that friction holds."""
@@ -270,7 +260,6 @@ def test_on_ground_that_holds_the_motion_is_the_ideal_trees_at_first_order() -> 
     assert 1.7 <= coarse / fine <= 2.3
 
 
-@recorded
 def test_warm_steps_take_three_passes_in_the_median_and_at_most_six_of_99_in_100() -> None:
     for name, case in TRAJECTORIES.items():
         if len(case["vehicle"]["wheels"]) > 4:
