@@ -22,10 +22,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"
 from laconic.errors import BadInput, Refused
 from laconic.robot.importer import Answers, import_robot
 from laconic.scene import read_scene
+from laconic.simulation import simulate
 from made_up_robots import FOUR_WHEELS, MJCF, SDF, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 LONGEST_S = 20.0
-STEPS = 5  # of the scene that came out
 OF_PYTHON = re.compile(r"object has no|Traceback|NoneType|invalid literal|could not convert|out of range|unpack|"
                        r"subscriptable|\b[A-Z]\w+Error\b|unexpected [A-Z]|recursion")
 ENDINGS = (".urdf", ".xacro", ".sdf", ".xml", ".world", ".mjcf")
@@ -134,11 +134,12 @@ def outcome(path: Path) -> tuple[str, str]:
     began = time.perf_counter()
     try:
         found = import_robot(path, Answers(rollers={"": "none"}, friction_coefficient=0.5))
-        kind, words = ("scene", "") if found.wheels else ("no wheel", "")
+        if not found.wheels:
+            return "no wheel", ""
+        kind, words = "scene", ""
         scene_path = path.with_suffix(".toml")
         scene_path.write_text(found.text, encoding="utf-8")
-        scene = read_scene(scene_path)
-        scene.plant(scene.core()).run(None, STEPS)
+        simulate(read_scene(scene_path))
     except BadInput as refused:
         kind, words = "refused", str(refused)
         if not words.startswith(("--", f"{path}: ")) or "\n" in words or OF_PYTHON.search(words):

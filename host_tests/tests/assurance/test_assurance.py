@@ -64,12 +64,15 @@ def test_a_mutant_is_the_text_with_one_fault(tmp_path: Path, monkeypatch: pytest
 
 
 @needs("gcc", "ctest")
-def test_mutants_of_a_small_file_are_noticed_behind_switches_and_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    file = next(path for path in mutate.sources(None) if path.endswith("/cmac.c"))
-    if not any("secure" in path.name for path in linked.programs()):
+@pytest.mark.parametrize("name, program, sample", [
+    ("cmac.c", "secure", 6), pytest.param("noise.c", "noise", 12, marks=pytest.mark.nightly)])
+def test_mutants_of_a_small_file_are_noticed_behind_switches_and_alone(capsys: pytest.CaptureFixture[str], name: str,
+                                                                       program: str, sample: int) -> None:
+    file = next(path for path in mutate.sources(None) if path.endswith(f"/{name}"))
+    if not any(program in path.name for path in linked.programs()):
         pytest.skip("the C tests of this file are not built")
-    assert mutate.run(argparse.Namespace(only=file, sample=6, seed=1, minutes=9.0, least=50.0))
-    assert "6 mutants" in capsys.readouterr().out
+    assert mutate.run(argparse.Namespace(only=file, sample=sample, seed=1, minutes=9.0, least=50.0))
+    assert f"{sample} mutants" in capsys.readouterr().out
 
 
 @needs("gcc")

@@ -111,7 +111,8 @@ def feed(twin: Plant, held: Any, torques_Nm: list[float]) -> None:
 
 
 @pytest.mark.parametrize(("real", "cycles"), [
-    pytest.param("double", 10_000, marks=pytest.mark.nightly), ("double", 4000), ("single", 1000)])
+    pytest.param("double", 10_000, marks=pytest.mark.nightly), ("double", 4000),
+    pytest.param("single", 2_000, marks=pytest.mark.nightly), ("single", 1000)])
 def test_the_controller_of_the_page_drives_the_scene_and_wheels_move_as_the_core_with_its_torques(
         real: str, cycles: int) -> None:
     with bench(real) as (this, controller):

@@ -157,9 +157,9 @@ def test_what_is_no_direction_is_refused_in_one_line(message):
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("damping, force_N, moment_Nm", [(0.0, 16.0, -8.0), (0.02, 10.0, 8.0)])
-def test_rounds_that_converge_late_are_derived_at_the_solution(monkeypatch, damping, force_N,
-                                                                                      moment_Nm):
+@pytest.mark.parametrize("damping, force_N, moment_Nm, least", [
+    (0.0, 10.0, -8.0, 1e-4), (0.02, 10.0, 8.0, 1e-7), (0.02, 16.0, 8.0, 1e-9)])
+def test_rounds_that_converge_late_are_derived_at_the_solution(monkeypatch, damping, force_N, moment_Nm, least):
     table = {**CARRIAGE, "yaw_inertia_kgm2": 0.225, "com_x_m": 0.0, "com_y_m": 0.02, "wheel_inertia_kgm2": 0.009,
              "motor_damping_Nms": damping, "wheel": [
                  {"kind": "roller", "x_m": x, "y_m": y, "axle_rad": axle, "roller_rad": np.pi / 2}
@@ -173,7 +173,7 @@ def test_rounds_that_converge_late_are_derived_at_the_solution(monkeypatch, damp
         assert error(tangent(trial, plant, along), found, along) <= TOLERANCE
         with monkeypatch.context() as more:
             more.setattr(exact_gauss, "MOST_ROUNDS", 32)
-            assert error(difference(trial, plant, along), found, along) > 1e-13
+            assert error(difference(trial, plant, along), found, along) > least
     assert adjoint_error(random, trial, plant) <= 1e-13
 
 
