@@ -12,16 +12,19 @@ import pytest
 from laconic.base.paths import built
 from laconic.tools.report.counting import cachegrind_present, instructions_of
 
-LEAST, MOST = 500, 1000  # steps: what a count of one run has in common with another's cancels
 LIMITS = {"casters-1": (3, 5.3), "casters-2": (4, 7.5), "tricycle-motor": (3, 8.0), "tricycle-prescribed": (3, 8.2),
           "ackermann": (4, 9.0), "swerve": (4, 12.5), "trailers-3": (6, 16.5)}
 
 
 @cache
+def cost(program: str, words: tuple[str, ...], least: int, most: int) -> float:
+    """Instructions of a step; what the counts of both runs have in common cancels."""
+    few, many = (instructions_of([str(built(f"bin/{program}")), *words, str(steps)]) for steps in (least, most))
+    return (many - few) / (most - least)
+
+
 def step_cost(vehicle: str, method: str) -> float:
-    program = str(built("bin/count_articulated"))
-    least, most = (instructions_of([program, vehicle, method, str(steps)]) for steps in (LEAST, MOST))
-    return (most - least) / (MOST - LEAST)
+    return cost("count_articulated", (vehicle, method), 500, 1000)
 
 
 @pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
@@ -40,11 +43,8 @@ def test_a_step_of_rk4_costs_at_most_so_many_plain_steps(capsys: pytest.CaptureF
 FRICTION_LIMITS = {"rigid": 1.5, "casters": 1.8, "loader": 1.8, "ackermann": 2.4, "swerve": 3.0}
 
 
-@cache
 def friction_step_cost(vehicle: str) -> float:
-    program = str(built("bin/count_tree"))
-    least, most = (instructions_of([program, vehicle, str(steps)]) for steps in (1000, 3000))
-    return (most - least) / 2000
+    return cost("count_tree", (vehicle,), 1000, 3000)
 
 
 @pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -134,35 +135,32 @@ def test_a_reference_that_cannot_be_read_is_one_line(change, words: str, tmp_pat
     assert status == 2 and words in why and why.count("\n") == 1
 
 
-def elsewhere(tmp_path: Path) -> dict[str, list[str]]:
-    """Every other command that takes a scene, with what it needs besides."""
-    log = tmp_path / "log.csv"
-    log.write_text("t_s,x_m,y_m\n0,0,0\n1,1,0\n", encoding="utf-8")
-    can = ["--interface", "virtual", "--channel", "none"]
-    return {"derive": ["SCENE"], "trim": ["SCENE"],
-            "rig": ["SCENE", *can, "--lockstep"], "play": ["SCENE", *can, "--drives", "canopen"],
-            "replay": [str(log), "SCENE"], "identify": [str(log), "--scene", "SCENE", "-o", str(tmp_path / "f.toml")],
-            "optimise": ["SCENE", "--free", "vehicle.mass_kg=1:2", "--goal", "min speed"],
-            "sweep": ["SCENE", "--vary", "vehicle.mass_kg=1:2:3", "-o", str(tmp_path / "sweep")],
-            "report": ["--scene", "SCENE"], "demo": ["SCENE"], "ros2": ["SCENE"],
-            "audit": [str(log), "SCENE"], "logs": [str(log), "--scene", "SCENE"]}
+CAN = "--interface virtual --channel none"
+ELSEWHERE = {  # every other command that takes a scene, with what it needs in addition
+    "derive": "SCENE", "trim": "SCENE", "rig": f"SCENE {CAN} --lockstep", "play": f"SCENE {CAN} --drives canopen",
+    "replay": "LOG SCENE", "identify": "LOG --scene SCENE -o FOLDER/f.toml",
+    "optimise": "SCENE --free vehicle.mass_kg=1:2 --goal min:speed",
+    "sweep": "SCENE --vary vehicle.mass_kg=1:2:3 -o FOLDER/sweep", "report": "--scene SCENE", "demo": "SCENE",
+    "ros2": "SCENE", "audit": "LOG SCENE", "logs": "LOG --scene SCENE"}
 
 
-def test_the_list_below_has_every_command_that_takes_a_scene(tmp_path: Path) -> None:
+def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
     texts = {path.stem: path.read_text(encoding="utf-8")
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse"} and takes - with_hinges == {*elsewhere(tmp_path)}
+    assert with_hinges == {"simulate", "fmu", "analyse"} and takes - with_hinges == {*ELSEWHERE}
 
 
-@pytest.mark.parametrize("command", ["derive", "trim", "rig", "play", "replay", "identify",
-                                     "optimise", "sweep", "report", "demo", "ros2", "audit", "logs"])
+@pytest.mark.parametrize("command", ELSEWHERE)
 @pytest.mark.parametrize("name", ["f1tenth", "mir_like", "tugger_train", "wheel_loader"])
 def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, name: str, tmp_path: Path,
                                                                 capsys: pytest.CaptureFixture[str]) -> None:
     scene = SCENE_DIR / f"{name}.toml"
-    arguments = [str(scene) if each == "SCENE" else each for each in elsewhere(tmp_path)[command]]
+    log = tmp_path / "log.csv"
+    log.write_text("t_s,x_m,y_m\n0,0,0\n1,1,0\n", encoding="utf-8")
+    names = {"SCENE": scene, "LOG": log, "FOLDER": tmp_path}
+    arguments = re.sub("|".join(names), lambda name: str(names[name[0]]), ELSEWHERE[command]).split()
     status, text, why = told([command, *arguments], capsys)
     assert status == 2 and text == "" and why.count("\n") == 1
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why

@@ -1,4 +1,4 @@
-"""Vehicles with hinges from Python: prepared, stepped, read, copied; exact results of PHYSICS.md 14."""
+"""Vehicles with hinges from Python: prepared, stepped, read, copied; exact results (docs/articulated.md)."""
 
 from __future__ import annotations
 

@@ -153,12 +153,9 @@ class Problem:
 
     def give_forces(self, after: State) -> None:
         """Sets each element's q from the forces that the core found."""
-        servo, scrub = 0, 0
-        counts = np.zeros(self.n, dtype=int)
         for element in self.elements:
             on = np.flatnonzero(element.row)
             if len(on) > 1 or on[0] == 2:
-                scrub += 1
                 continue
             j = on[0] - 3
             if element.high == INFINITE and element.low == -INFINITE:
@@ -169,10 +166,8 @@ class Problem:
                 element.q = self.h * after.stop_Nm[j][1]
             elif element.compliance > 0:
                 element.q = self.h * after.drive_Nm[j]
-                servo += 1
             else:
                 element.q = self.h * after.dry_Nm[j]
-            counts[j] += 1
         scrubbing = [i for i, wheel in enumerate(self.wheels) if wheel["scrub_radius_m"] > 0]
         for i, element in zip(scrubbing, self.elements[len(self.elements) - len(scrubbing):], strict=True):
             element.q = self.h * after.scrub_Nm[i]

@@ -36,21 +36,6 @@ def test_a_record_is_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert scene.run.duration_s == pytest.approx(0.1) and scene.inputs == ()  # nothing moved, so no voltage acted
 
 
-@pytest.mark.parametrize("words, message", [
-    (["--rate", "333"], "--rate: a period of 0.003003 s is not a whole number of steps"),
-    (["--namespace", "a-b"], "--namespace: a-b is not a name of ROS"),
-    (["--domain", "999"], "--domain: 999 is not a domain; give 0 to 232"),
-    (["--speed", "3"], "add --sim-time"), (["--frame", "base"], "--frame: base is not NAME=FRAME"),
-    (["--map", "there.yaml"], "--map: has a meaning with --loopback alone"),
-    (["--urdf", "there.urdf"], "there.urdf"), (["--distro", "foxy"], "'foxy' is not one of"),
-    (["--loopback", "--map", "there.yaml"], "there.yaml")])
-def test_a_wrong_option_is_one_line_and_status_2(words: list[str], message: str,
-                                                 capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["ros2", "robotino2", "--local", *words]) == 2
-    text = capsys.readouterr().err
-    assert message in text and text.count("\n") == 1
-
-
 def test_the_environment_names_domain_and_distribution(monkeypatch: pytest.MonkeyPatch,
                                                        capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", "80")

@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from laconic.robot.importer import Answers, Imported, import_robot
+from laconic.scene import Scene, read_scene
+
 BOX = '<collision><geometry><box size="0.4 0.3 0.1"/></geometry></collision>'
 
 
@@ -95,3 +98,11 @@ def sums_by_mujoco(path: Path) -> tuple[float, np.ndarray, float]:
         off = data.xipos[body] - com
         yaw += (turn @ np.diag(model.body_inertia[body]) @ turn.T)[2, 2] + mass[body] * (off[0] ** 2 + off[1] ** 2)
     return float(mass.sum()), com, float(yaw)
+
+
+def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:
+    """A robot's file and the scene that the import makes of it."""
+    (folder / name).write_text(text, encoding="utf-8")
+    found = import_robot(folder / name, Answers(**answers))
+    (folder / "robot.toml").write_text(found.text, encoding="utf-8")
+    return found, read_scene(folder / "robot.toml")

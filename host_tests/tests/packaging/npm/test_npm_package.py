@@ -17,7 +17,7 @@ from laconic import read_scene
 from laconic.base.paths import build_dir
 from laconic.core import load
 
-needs_npm_package1 = pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
 
 
 SOURCES = Path(__file__).parents[4] / "web/npm"
@@ -48,7 +48,7 @@ def unpack(target: Path) -> None:
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_its_hash_is_that_of_the_native_core(tmp_path):
     native = subprocess.run([build_dir() / "core_c/tests/trajectory_hash_double_shipped"], capture_output=True,
                             text=True, check=True).stdout.split()
@@ -58,7 +58,7 @@ def test_its_hash_is_that_of_the_native_core(tmp_path):
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_the_readmes_example_prints_what_the_readme_says(tmp_path):
     script, output = re.findall(r"```\w+\n(.*?)```", SAMPLE.read_text(encoding="utf-8"), re.DOTALL)
     assert node(script, tmp_path) == output
@@ -76,7 +76,7 @@ robot.run("200");
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 @pytest.mark.skipif(shutil.which("tsc") is None, reason="needs tsc (Debian: node-typescript)")
 def test_its_types_take_the_readmes_example_and_refuse_what_is_wrong(tmp_path):
     unpack(tmp_path / "node_modules/laconic-robots")
@@ -105,7 +105,7 @@ SCENES = ("robotino2", "kuka_youbot", "skid_steer", "example_two_wheel_sizes", "
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_scenes_have_the_bits_of_the_native_core(tmp_path):
     from laconic_build.page.scenes import plain_scene
     runs, expected = [], []
@@ -139,7 +139,7 @@ for (const change of CHANGES)
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_what_the_core_refuses_is_one_line_that_names_the_field(tmp_path):
     changes = """[{ mass_kg: 0 }, { mass_kg: NaN }, { mas_kg: 1 }, { mass_kg: "1" },
         { wheel: [{ ...wheel, x_m: Infinity }] }, { wheel: [{ ...wheel, kind: "round" }] },
@@ -177,7 +177,7 @@ for (const call of calls)
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_velocities_that_are_no_numbers_and_freed_robots_are_refused(tmp_path):
     was_freed = "robot: was freed; make another by robot()"
     assert node(ASKED, tmp_path).splitlines() == [
@@ -187,7 +187,7 @@ def test_velocities_that_are_no_numbers_and_freed_robots_are_refused(tmp_path):
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_memory_of_freed_robots_is_used_again(tmp_path):
     script = """import { load } from "laconic-robots";
         const laconic = await load();
@@ -202,7 +202,7 @@ def test_memory_of_freed_robots_is_used_again(tmp_path):
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_its_types_and_its_modules_have_the_same_names():
     types = (FOLDER / "src/index.d.ts").read_text(encoding="utf-8")
     code = {path.name: path.read_text(encoding="utf-8") for path in (FOLDER / "src").glob("*.js")}
@@ -218,7 +218,7 @@ def test_its_types_and_its_modules_have_the_same_names():
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_it_lists_the_methods_of_the_core_with_their_orders(tmp_path):
     from laconic.scene.methods import ROWS
     script = 'import { load } from "laconic-robots"; console.log(JSON.stringify((await load()).methods));'
@@ -226,7 +226,7 @@ def test_it_lists_the_methods_of_the_core_with_their_orders(tmp_path):
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_it_tells_of_itself_what_all_packages_tell():
     manifest = json.loads((FOLDER / "package.json").read_text(encoding="utf-8"))
     facts = json.loads((SOURCES.parents[1] / "packaging" / "facts.json").read_text(encoding="utf-8"))
@@ -236,7 +236,7 @@ def test_it_tells_of_itself_what_all_packages_tell():
 
 
 @needs_npm_package
-@needs_npm_package1
+@needs_node
 def test_packing_twice_gives_the_same_bytes_and_every_file_that_npm_would_pack(tmp_path):
     from laconic_build.page.npm import packed
     assert hashlib.sha256(packed(FOLDER)).hexdigest() == hashlib.sha256(ARCHIVE.read_bytes()).hexdigest()

@@ -49,6 +49,14 @@ def test_every_file_and_c_name_that_the_page_mentions_exists() -> None:
     assert set(re.findall(r"`((?:laconic|fmu|fmi\d|LACONIC)_?\w+)`", PAGE)) - words - packages == set()
 
 
+def test_every_folder_of_tests_that_a_page_names_is_there() -> None:
+    pages = [SOURCE_DIR / "README.md", SOURCE_DIR / "CONTRIBUTING.md", *sorted((SOURCE_DIR / "docs").glob("*.md"))]
+    named = {(page.name, path.rstrip(".")) for page in pages
+             for path in re.findall(r"host_tests/[\w/.]+", page.read_text(encoding="utf-8"))}
+    assert len(named) > 10
+    assert [each for each in sorted(named) if not (SOURCE_DIR / each[1]).exists()] == []
+
+
 def test_every_page_can_be_reached_from_the_readme() -> None:
     seen, todo = set(), [SOURCE_DIR / "README.md"]
     while todo:

@@ -237,7 +237,7 @@ def test_the_example_of_the_page_prints_what_the_page_says(capsys):
 
 # ---- A batch after os.fork(): the threads stayed with the parent, so the child begins new ones.
 
-needs_batch_fork1 = pytest.mark.filterwarnings("ignore:.*fork")
+ignores_fork_warning = pytest.mark.filterwarnings("ignore:.*fork")
 
 
 needs_batch_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
@@ -247,7 +247,7 @@ LONGEST_S = 60
 
 
 @needs_batch_fork
-@needs_batch_fork1
+@ignores_fork_warning
 def test_a_batch_runs_on_threads_in_a_child_and_in_its_parent() -> None:
     batch = laconic.Batch(laconic.Vehicle.of(laconic.read_scene("robotino2")), 256, step_s=0.01)
     batch.voltage_V[:] = np.linspace(-6.0, 6.0, 256)

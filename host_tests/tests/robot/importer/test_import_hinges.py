@@ -5,16 +5,14 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from laconic.cli.main import run
-from laconic.robot.importer import Answers, Imported, import_robot
-from laconic.scene import Scene, read_scene
+from laconic.scene import Scene
 from laconic.simulation import simulate
-from made_up_robots import BOX, MJCF, SDF, inertial, joint, link, robot, wheel
+from made_up_robots import BOX, MJCF, SDF, imported, inertial, joint, link, robot, wheel
 
 LIMIT = '<limit lower="{0}" upper="{1}" effort="1" velocity="{2}"/>'
 
@@ -43,13 +41,6 @@ def swivel(name: str, x: float, y: float, trail: float = 0.0, scrub: float = 0.0
 
 REAR = wheel("left", "base", "0 0.2 -0.05") + wheel("right", "base", "0 -0.2 -0.05")
 ROLL = ("left", "right")
-
-
-def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:
-    (folder / name).write_text(text, encoding="utf-8")
-    found = import_robot(folder / name, Answers(**answers))
-    (folder / "robot.toml").write_text(found.text, encoding="utf-8")
-    return found, read_scene(folder / "robot.toml")
 
 
 def end_of(scene: Scene) -> dict[str, float]:

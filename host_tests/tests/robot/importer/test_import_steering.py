@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 
+import made_up_robots
 from laconic.errors import BadInput
-from laconic.robot.importer import Answers, Imported, import_robot
-from laconic.scene import Scene, read_scene
+from laconic.robot.importer import Imported
+from laconic.scene import Scene
 from laconic.simulation import simulate
 from made_up_robots import BOX, MJCF, SDF, TWO_WHEELS, inertial, joint, link, robot, wheel
 
@@ -33,10 +34,7 @@ def swivelling(trail: float, kind: str = "continuous", more: str = "", *parts: s
 
 
 def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:
-    (folder / name).write_text(text, encoding="utf-8")
-    found = import_robot(folder / name, Answers(**{"hinges": False} | answers))
-    (folder / "robot.toml").write_text(found.text, encoding="utf-8")
-    return found, read_scene(folder / "robot.toml")
+    return made_up_robots.imported(folder, text, name, **{"hinges": False} | answers)
 
 
 def support_words(found: Imported) -> str:

@@ -12,20 +12,24 @@ from typing import Any
 import pytest
 
 from laconic.errors import BadInput
-from laconic.robot.importer import Answers, Imported, import_robot
 from laconic.robot.importer.robot_tree import MOST_LINKS
-from laconic.scene import Scene, read_scene
-from made_up_robots import BOX, MJCF, SDF, THREE_AROUND, TWO_WHEELS, WHEEL, inertial, joint, link, robot, wheel
+from made_up_robots import (
+    BOX,
+    MJCF,
+    SDF,
+    THREE_AROUND,
+    TWO_WHEELS,
+    WHEEL,
+    imported,
+    inertial,
+    joint,
+    link,
+    robot,
+    wheel,
+)
 
 CYLINDER = '<geometry><cylinder radius="0.05" length="0.02"/></geometry>'
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-
-
-def imported(folder: Path, text: str, name: str = "robot.urdf", **answers: Any) -> tuple[Imported, Scene]:
-    (folder / name).write_text(text, encoding="utf-8")
-    found = import_robot(folder / name, Answers(**answers))
-    (folder / "robot.toml").write_text(found.text, encoding="utf-8")
-    return found, read_scene(folder / "robot.toml")
 
 
 def vehicle(folder: Path, text: str, name: str = "robot.urdf") -> dict[str, Any]:
