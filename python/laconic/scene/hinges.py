@@ -87,9 +87,9 @@ def has_hinges(vehicle: Any) -> bool:
     if not isinstance(vehicle, Mapping):
         return False
     wheels = vehicle.get("wheel")
-    steered = isinstance(wheels, list) and any(isinstance(each, Mapping) and ("steered" in each or "body" in each)
-                                               for each in wheels)
-    return steered or any(vehicle.get(form) for form in SHORT_FORMS)
+    hung = isinstance(wheels, list) and any(
+        isinstance(each, Mapping) and ("steered" in each or each.get("body", CARRIAGE) != CARRIAGE) for each in wheels)
+    return hung or any(vehicle.get(form) for form in SHORT_FORMS)
 
 
 def file_has_hinges(path: Path) -> bool:

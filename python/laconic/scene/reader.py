@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from laconic.core import Field, load
-from laconic.core.articulated import method_names
+from laconic.core.articulated import CARRIAGE, method_names
 from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
@@ -184,7 +184,7 @@ def read_wheel(table: Table) -> dict[str, Any]:
     wheel |= read_own(table, [field for field in fields.values() if field.is_own])
     check_wheel(table, wheel)
     wheel |= {"steered": steered} if steered else {}
-    wheel |= {"body": body} if body is not None else {}
+    wheel |= {"body": body} if body not in (None, CARRIAGE) else {}
     if not steered:
         check_not_steered(table)
         table.done(OF_WHEELS)
