@@ -186,10 +186,10 @@ def test_wheels_on_the_carriage_by_name_make_no_hinges() -> None:
 def test_the_loads_of_a_trailer_are_shared_with_its_hitch() -> None:
     run = simulate(read_scene("tugger_train").with_run(duration_s=0.1))
     from laconic.core.articulated import ArticulatedVehicle
-    from laconic.simulation.loads import GRAVITY_M_PER_S2, loads_of
+    from laconic.simulation.loads import GRAVITY_M_PER_S2, Loads
 
     motion = ArticulatedVehicle.of(run.scene).plant().motion()
-    loads = loads_of(run.scene, motion)
+    loads = Loads(run.scene).of(motion)
     assert loads.sum() == pytest.approx(GRAVITY_M_PER_S2 * (1100.0 + 20.0 + 3 * 400.0), rel=1e-12)
     third = 400.0 * GRAVITY_M_PER_S2 * 1.2 / 1.3  # the hitch takes the rest
     assert loads[7] == pytest.approx(third / 2.0, rel=1e-12)
