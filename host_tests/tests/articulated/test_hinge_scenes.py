@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import copy
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from hinge_scenes import CASTER, HINGED, held, scene_with, tables_of, two_wheels
 
-from laconic import Trajectory, read_scene, simulate
+from laconic import Trajectory, build_scene, read_scene, simulate
 from laconic.base.paths import scene_names
 from laconic.scene import rigid_scene_names
+from laconic.scene.hinges import has_hinges
+from laconic.tools.analyse.hinged import hinged_numbers, study_hinges
 
 
 @pytest.fixture(scope="module")
@@ -152,13 +156,40 @@ def test_a_wheel_that_is_steered_and_held_is_a_wheel_at_that_angle() -> None:
         assert np.abs(rigid.columns[name] - hinged.columns[name]).max() < 1e-8, name
 
 
+def on_carriage(tables: dict[str, Any], count: int) -> dict[str, Any]:
+    """The same with the first wheels on the carriage by name."""
+    named = copy.deepcopy(tables)
+    for wheel in named["vehicle"]["wheel"][:count]:
+        wheel["body"] = "carriage"
+    return named
+
+
+def test_a_wheel_on_the_carriage_by_name_is_one_without_a_body() -> None:
+    tables = tables_of("f1tenth")
+    for wheel in tables["vehicle"]["wheel"][:2]:
+        wheel["x_m"] = 0.05  # an axle ahead of the origin, which steering must know
+    plain, named = (build_scene(each) for each in (tables, on_carriage(tables, 2)))
+    assert named.vehicle == plain.vehicle
+    runs = [simulate(scene.with_run(duration_s=3.0)).columns for scene in (plain, named)]
+    assert all(np.array_equal(column, runs[1][name]) for name, column in runs[0].items())
+    one, other = (hinged_numbers(study_hinges(scene)) for scene in (plain, named))
+    assert one["limits"] == other["limits"] and one["turns"] == other["turns"]
+
+
+def test_wheels_on_the_carriage_by_name_make_no_hinges() -> None:
+    tables = on_carriage(two_wheels(), 2) | {"initial": {"nu_rad_per_s": [1.0, 0.0, 0.0]}}
+    scene = build_scene(tables)  # with a start that vehicles with hinges do not have
+    assert not scene.has_hinges and not has_hinges(tables["vehicle"])
+    assert not any("body" in wheel for wheel in scene.vehicle["wheel"])
+
+
 def test_the_loads_of_a_trailer_are_shared_with_its_hitch() -> None:
     run = simulate(read_scene("tugger_train").with_run(duration_s=0.1))
     from laconic.core.articulated import ArticulatedVehicle
-    from laconic.simulation.loads import GRAVITY_M_PER_S2, loads_of
+    from laconic.simulation.loads import GRAVITY_M_PER_S2, Loads
 
     motion = ArticulatedVehicle.of(run.scene).plant().motion()
-    loads = loads_of(run.scene, motion)
+    loads = Loads(run.scene).of(motion)
     assert loads.sum() == pytest.approx(GRAVITY_M_PER_S2 * (1100.0 + 20.0 + 3 * 400.0), rel=1e-12)
     third = 400.0 * GRAVITY_M_PER_S2 * 1.2 / 1.3  # the hitch takes the rest
     assert loads[7] == pytest.approx(third / 2.0, rel=1e-12)

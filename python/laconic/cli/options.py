@@ -65,13 +65,17 @@ class SceneName(click.ParamType[str]):
         _path(value, param)
         if path := named_scene(value):
             outputs.claims(ctx).read(path)
-            from laconic.scene.hinges import file_has_hinges  # loads the core
-
-            if not self.takes_hinges and file_has_hinges(path):
-                command = f"laconic {ctx.info_name}" if ctx and ctx.info_name else "this"
-                raise BadInput(f"{path}: {command} does not take vehicles with hinges (steered wheels, casters, "
-                               "trailers) yet; use laconic simulate")
+            if not self.takes_hinges:
+                _check_rigid(path, f"laconic {ctx.info_name}" if ctx and ctx.info_name else "this")
         return value
+
+
+def _check_rigid(path: Path, command: str) -> None:
+    from laconic.scene.hinges import file_has_hinges  # loads the core
+
+    if file_has_hinges(path):
+        raise BadInput(f"{path}: {command} does not take vehicles with hinges (steered wheels, casters, trailers) yet; "
+                       "use laconic simulate")
 
 
 class ReferenceOrScene(click.ParamType[str]):
@@ -145,6 +149,14 @@ def one_of(name: str, choices: Sequence[str], meaning: str, **more: Any) -> Call
     """An option with many choices: they stand in its help, which is wrapped, and not in one long line before it."""
     return click.option(name, type=click.Choice(choices), metavar=name.lstrip("-").upper(),
                         help=f"{meaning}: {', '.join(choices)}.", **more)
+
+
+def all_methods() -> tuple[str, ...]:
+    """Of all vehicles; those for hinges alone come last."""
+    from laconic.core.articulated import method_names  # loads the core
+    from laconic.scene import METHODS
+
+    return tuple(dict.fromkeys((*METHODS, *method_names())))
 
 
 def only_one(flags: Mapping[str, bool]) -> str | None:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.articulated_input import input_slots, row_of_hinges
+from laconic.core.articulated_input import input_slots, row_length, row_of_hinges
 from laconic.core.binding import Core, load
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, items, number, one_of, shown, step_count
@@ -171,6 +171,10 @@ class ArticulatedVehicle(OwnMemory):
         steering_twist (3 numbers). BadInput for what is no signal, no number or no hinge."""
         return row_of_hinges(self.core, self.names, self.wheel_count, {} if values is None else values)
 
+    def row_of(self, inputs: Mapping[str, float | Sequence[float]] | np.ndarray | None) -> np.ndarray:
+        """A row as it is; of names a new one."""
+        return inputs if isinstance(inputs, np.ndarray) else self.input_row(inputs)
+
     def slot(self, signal: str) -> int:
         """Where a signal such as voltage_V[2] or hinge_torque_Nm[fork] stands in a row of input numbers."""
         return input_slots(self.core, self.names, signal).start
@@ -195,8 +199,7 @@ class ArticulatedVehicle(OwnMemory):
             "heading_rad": finite_number("heading_rad", heading_rad),
             "hinge_angle_rad": finite_numbers("hinge_angle_rad", hinge_angle_rad or zeros, hinges),
             "hinge_rate_rad_per_s": finite_numbers("hinge_rate_rad_per_s", hinge_rate_rad_per_s or zeros, hinges)})
-        row = inputs if isinstance(inputs, np.ndarray) else self.input_row(inputs)
-        return ArticulatedPlant(self, method, step_s, start, row)
+        return ArticulatedPlant(self, method, step_s, start, self.row_of(inputs))
 
 
 class ArticulatedPlant(OwnMemory):
@@ -238,7 +241,7 @@ class ArticulatedPlant(OwnMemory):
 
         Refused leaves the state before the refused step. Rates and twist that jump keep the momenta that the wheels
         allow."""
-        held = self._input(inputs if isinstance(inputs, np.ndarray) else self.vehicle.input_row(inputs))
+        held = self._input(self.vehicle.row_of(inputs))
         step, model, why = self.core.lib.laconic_articulated_step, self.vehicle.model, self.core.why()
         for _ in range(step_count("steps", steps)):
             if step(model, self.integrator, self.c, held, held, why) != 0:
@@ -247,15 +250,14 @@ class ArticulatedPlant(OwnMemory):
 
     def step(self, start: Any, end: Any) -> None:
         """One step along inputs that are linear from `start` to `end`, each given as for `run`."""
-        rows = [each if isinstance(each, np.ndarray) else self.vehicle.input_row(each) for each in (start, end)]
-        self.follow(np.array([rows]))
+        self.follow(np.array([[self.vehicle.row_of(each) for each in (start, end)]]))
 
     def follow(self, rows: np.ndarray, ramped: bool = True) -> None:
         """One step for each of `rows`, shape (steps, 2, numbers of a row): inputs at its start and end, linear in
         between; not `ramped`: rates and twists have their derivatives in the rows, for a cubic. Refused leaves the
         state before the refused step."""
         lib, ffi, model, why = self.core.lib, self.core.ffi, self.vehicle.model, self.core.why()
-        size = ffi.sizeof("laconic_articulated_input") // self.core.dtype.itemsize
+        size = row_length(self.core)
         table = np.ascontiguousarray(rows, self.core.dtype)
         if table.ndim != 3 or table.shape[1:] != (2, size):
             raise BadInput(f"rows: has the shape {table.shape}, not (steps, 2, {size}); give the start and the end of "
@@ -282,13 +284,10 @@ class ArticulatedPlant(OwnMemory):
         self.c[0], self.steps = state[0], step_count("steps", steps)
 
     def _input(self, row: np.ndarray) -> Any:
-        held = self.core.ffi.new("laconic_articulated_input *")
-        size = self.core.ffi.sizeof("laconic_articulated_input")
-        data = row.astype(self.core.dtype).tobytes()
-        if len(data) != size:
-            raise BadInput(f"inputs: a row has {size // self.core.dtype.itemsize} numbers, this one {row.size}; make "
-                           "it with input_row")
-        self.core.ffi.memmove(held, data, size)
+        held, data = self.core.ffi.new("laconic_articulated_input *"), row.astype(self.core.dtype).tobytes()
+        if row.size != (size := row_length(self.core)):
+            raise BadInput(f"inputs: a row has {size} numbers, this one {row.size}; make it with input_row")
+        self.core.ffi.memmove(held, data, len(data))
         return held
 
     # ---- outputs
@@ -305,7 +304,7 @@ class ArticulatedPlant(OwnMemory):
 
         `normal_N`: a load for each wheel, for the margin alone. Refused where wheels or twist do not allow a motion."""
         ffi, lib, why = self.core.ffi, self.core.lib, self.core.why()
-        row = inputs if isinstance(inputs, np.ndarray) else self.vehicle.input_row(inputs)
+        row = self.vehicle.row_of(inputs)
         loads = ffi.NULL if normal_N is None else ffi.new(
             "laconic_real[]", finite_numbers("normal_N", np.asarray(normal_N), self.vehicle.wheel_count) or [0.0])
         found = ffi.new("laconic_articulated_reactions *")
@@ -318,7 +317,7 @@ class ArticulatedPlant(OwnMemory):
 
         A row has the velocity of the body's origin in its own axes and its yaw rate; the carriage's origin, in the
         first row, is its centre of mass."""
-        row = inputs if isinstance(inputs, np.ndarray) else self.vehicle.input_row(inputs)
+        row = self.vehicle.row_of(inputs)
         rates, why = self.core.ffi.new("laconic_articulated_rates *"), self.core.why()
         self.core.check(self.core.lib.laconic_articulated_rates_of(
             rates, self.vehicle.model, self.c, self._input(row), why), why)

@@ -22,7 +22,7 @@ TWIST = "steering_twist"
 
 
 @cache
-def _member(core: Core, name: str) -> tuple[int, int]:
+def member_of(core: Core, name: str) -> tuple[int, int]:
     """Offset and length of a member of laconic_articulated_input, in numbers."""
     field = dict(core.ffi.typeof("laconic_articulated_input").fields)[name]
     size = core.ffi.sizeof(field.type) // core.dtype.itemsize
@@ -39,21 +39,21 @@ def input_slots(core: Core, names: Sequence[str], signal: str) -> range:
     name, _, inside = str(signal).partition("[")
     item = inside.removesuffix("]")
     if name in PER_HINGE:
-        start, _ = _member(core, PER_HINGE[name])
+        start, _ = member_of(core, PER_HINGE[name])
         if not inside:
             return range(start, start + len(names))
         if item not in names:
             raise BadInput(f"{signal}: there is no such hinge; {nearest_of(item, names, _known(names))}")
         return range(start + names.index(item), start + names.index(item) + 1)
     if name == TWIST:
-        start, length = _member(core, "twist")
+        start, length = member_of(core, "twist")
         if inside and item not in ("1", "2", "3"):
             raise BadInput(f"{signal}: there is no such item; give 1 to 3")
         return range(start + int(item) - 1, start + int(item)) if inside else range(start, start + length)
     if name not in core.input_fields:
         raise BadInput(f"{signal}: there is no such input; "
                        f"{nearest_of(name, (*core.input_fields, *PER_HINGE, TWIST))}")
-    first, _ = _member(core, "base")
+    first, _ = member_of(core, "base")
     slots = slots_of(core, signal)
     return range(first + slots.start, first + slots.stop)
 

@@ -63,6 +63,11 @@ def x_and_y(distance_m: float, bearing_rad: float) -> tuple[float, float]:
     return distance_m * math.cos(bearing_rad), distance_m * math.sin(bearing_rad)
 
 
+def wrapped(angle_rad: float) -> float:
+    """The same direction in (−π, π], with the same bits for every reader."""
+    return -((math.pi - angle_rad) % (2.0 * math.pi) - math.pi)
+
+
 class _Given:
     """A table of a program as Keys."""
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from laconic.core.articulated import CARRIAGE
 from laconic.scene import Scene
+from laconic.scene.standing import hull_of
 
 DRAWN = ("origin_x_m", "origin_y_m", "body_x_m", "body_y_m", "body_heading_rad")
 """What a run keeps for its picture besides the usual signals."""
@@ -23,15 +26,7 @@ def outline_points(scene: Scene) -> dict[str, list[complex]]:
 
 def hull(points: list[complex]) -> list[complex]:
     """Corners of the smallest convex outline."""
-    order = sorted(set(points), key=lambda p: (p.real, p.imag))
-    if len(order) < 3:
-        return order
-    halves = []
-    for way in (order, order[::-1]):
-        half: list[complex] = []
-        for point in way:
-            while len(half) > 1 and ((half[-1] - half[-2]).conjugate() * (point - half[-2])).imag <= 0.0:
-                half.pop()
-            half.append(point)
-        halves.append(half[:-1])
-    return halves[0] + halves[1]
+    apart = sorted(set(points), key=lambda p: (p.real, p.imag))
+    if len(apart) < 3:
+        return apart
+    return [apart[k] for k in hull_of(np.array([(point.real, point.imag) for point in apart]))]

@@ -9,6 +9,7 @@ from laconic.core import load
 from laconic.core.fields import OF_GROUND
 from laconic.errors import BadInput
 from laconic.scene.fields import read_field
+from laconic.scene.hinges import check_without_hinges
 from laconic.scene.keys import MOTOR_CIRCUITS, key_of, read_choice
 from laconic.scene.table import Table
 
@@ -31,9 +32,7 @@ def slips(vehicle: dict[str, Any]) -> bool:
 
 def check_ideal_ground(scene: Scene, command: str, instead: str = "") -> None:
     """BadInput where a command that treats (4.7) gets a vehicle with friction or limits of its drives."""
-    if scene.has_hinges:
-        raise BadInput(f"{scene.path}: {scene.hinges[0].place}: laconic {command} does not take vehicles with hinges "
-                       "yet; use laconic simulate")
+    check_without_hinges(scene, f"laconic {command}")
     if has_friction(scene.vehicle):
         raise BadInput(f"{scene.path}: laconic {command} treats ideal ground and motors without limits; give a scene "
                        f"without friction in [ground], without [vehicle.drive] and motor_circuit{instead}")

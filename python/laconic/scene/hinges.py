@@ -12,13 +12,16 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from laconic.base.paths import scene_names, scene_path
 from laconic.core.articulated import CARRIAGE, NAME
 from laconic.errors import BadInput, Refused, nearest_of, shown
 from laconic.scene.keys import read_choice, read_number
 from laconic.scene.table import Table, read_toml
+
+if TYPE_CHECKING:
+    from laconic.scene.scene import Scene
 
 ROLLS_FORWARD_RAD = -math.pi / 2  # the axle of a wheel whose positive speed is forward
 SHORT_FORMS = ("caster", "trailer", "body")
@@ -87,9 +90,9 @@ def has_hinges(vehicle: Any) -> bool:
     if not isinstance(vehicle, Mapping):
         return False
     wheels = vehicle.get("wheel")
-    steered = isinstance(wheels, list) and any(isinstance(each, Mapping) and ("steered" in each or "body" in each)
-                                               for each in wheels)
-    return steered or any(vehicle.get(form) for form in SHORT_FORMS)
+    hung = isinstance(wheels, list) and any(
+        isinstance(each, Mapping) and ("steered" in each or each.get("body", CARRIAGE) != CARRIAGE) for each in wheels)
+    return hung or any(vehicle.get(form) for form in SHORT_FORMS)
 
 
 def file_has_hinges(path: Path) -> bool:
@@ -103,6 +106,13 @@ def file_has_hinges(path: Path) -> bool:
 def rigid_scene_names() -> list[str]:
     """Names of the scenes without hinges that come with the project."""
     return [name for name in scene_names() if not file_has_hinges(scene_path(name))]
+
+
+def check_without_hinges(scene: Scene, command: str) -> None:
+    """BadInput where something that knows rigid vehicles alone gets one with hinges."""
+    if scene.has_hinges:
+        raise BadInput(f"{scene.path}: {scene.hinges[0].place}: {command} does not take vehicles with hinges yet; use "
+                       "laconic simulate")
 
 
 def read_hinges(table: Table, wheels: Sequence[tuple[Table, dict[str, Any]]]) -> Hung:

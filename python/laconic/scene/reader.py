@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from laconic.core import Field, load
-from laconic.core.articulated import method_names
+from laconic.core.articulated import CARRIAGE, method_names
 from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
@@ -64,6 +64,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["sensors"],
                                     parts["run"]["duration_s"])
     parts["base"] = read_base(top.table("base"), parts["vehicle"]) if top.has("base") else None
+    parts["hinges"], parts["wheel_places"] = (), ()
     parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
     parts["in_degrees"] = frozenset(top.in_degrees)
@@ -133,7 +134,8 @@ def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:
     wheels = [(each, read_wheel(each)) for each in table.tables("wheel")]
     vehicle["wheel"] = [wheel for _, wheel in wheels]
     needed = ... if vehicle["wheel"] else 0.0
-    hung = read_hinges(table, wheels) if has_hinges(table.plain()) else None
+    is_hung = has_hinges({key: table.peek(key) for key in ("wheel", *SHORT_FORMS)})
+    hung = read_hinges(table, wheels) if is_hung else None
     if hung is not None:
         vehicle |= {"wheel": hung.wheels, "body": hung.bodies}
     vehicle |= {field.key: read_field(table, field, needed) for field in fields if field.need == "WITH_WHEELS"}
@@ -184,7 +186,7 @@ def read_wheel(table: Table) -> dict[str, Any]:
     wheel |= read_own(table, [field for field in fields.values() if field.is_own])
     check_wheel(table, wheel)
     wheel |= {"steered": steered} if steered else {}
-    wheel |= {"body": body} if body is not None else {}
+    wheel |= {"body": body} if body not in (None, CARRIAGE) else {}
     if not steered:
         check_not_steered(table)
         table.done(OF_WHEELS)

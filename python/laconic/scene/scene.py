@@ -20,7 +20,7 @@ from laconic.core.sensors import Sensors
 from laconic.errors import BadInput, Refused
 from laconic.scene.base import BaseTable
 from laconic.scene.drives import Drives
-from laconic.scene.hinges import Hinge, refusal_of_hinges
+from laconic.scene.hinges import Hinge, check_without_hinges, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.methods import METHODS
 from laconic.scene.names import in_file
@@ -254,13 +254,6 @@ class Scene:
         return InputsOnGrid.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
 
 
-def check_without_hinges(scene: Scene, command: str) -> None:
-    """BadInput where something that knows rigid vehicles alone gets one with hinges."""
-    if scene.has_hinges:
-        raise BadInput(f"{scene.path}: {scene.hinges[0].place}: {command} does not take vehicles with hinges yet; use "
-                       "laconic simulate")
-
-
 def check_scene(given: Any) -> Scene:
     """A scene as it is; BadInput for a path, a name or anything else."""
     if not isinstance(given, Scene):
@@ -280,8 +273,8 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], base=parts.get("base"), in_degrees=parts["in_degrees"],
-        hinges=parts.get("hinges", ()), wheel_places=parts.get("wheel_places", ())))
+        sensors=parts["sensors"], base=parts["base"], in_degrees=parts["in_degrees"],
+        hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
 
 
 def with_found_step(scene: Scene) -> Scene:

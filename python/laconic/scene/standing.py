@@ -81,7 +81,7 @@ def why_it_tips(vehicle: Mapping[str, Any]) -> str:
         where = "on one point" if len(points) == 1 else f"in one line ({_listed(names)})"
         centre_is = "above it" if off_mm < ABOVE_MM else f"{off_mm:.3g} mm off"
         return f"nothing keeps it from tipping: it stands {where}, and its centre of mass is {centre_is}; {REMEDY}"
-    hull = _hull(points)
+    hull = hull_of(points)
     edges = [(hull[k], hull[(k + 1) % len(hull)]) for k in range(len(hull))]
     outside = [(_right_of(points[a], points[b], centre), a, b) for a, b in edges]
     distance, a, b = max(outside)
@@ -110,7 +110,7 @@ def _one_line(points: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     return (first, direction) if off.max() <= tolerance_m([*points]) else None
 
 
-def _hull(points: np.ndarray) -> list[int]:
+def hull_of(points: np.ndarray) -> list[int]:
     """The corners of the polygon around all points, counter-clockwise."""
     order = sorted(range(len(points)), key=lambda k: (points[k][0], points[k][1]))
     halves: list[list[int]] = []

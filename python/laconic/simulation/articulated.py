@@ -12,6 +12,7 @@ import numpy as np
 
 from laconic.base.progress import Advance
 from laconic.core.articulated import ArticulatedMotion, ArticulatedPlant, ArticulatedReactions, ArticulatedVehicle
+from laconic.core.spelling import wrapped
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import (
@@ -22,8 +23,9 @@ from laconic.scene.hinge_signals import (
     read_hinge_signals,
 )
 from laconic.scene.hinges import Hinge
+from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.table import Table
-from laconic.simulation.loads import loads_of
+from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
 CHUNK = 2048             # steps whose inputs are made ready at once
@@ -61,9 +63,9 @@ def kept_signals_with_hinges(scene: Scene, given: Sequence[str]) -> tuple[str, .
 class Rows:
     """The outputs of a run, row by row."""
 
-    def __init__(self, scene: Scene, vehicle: ArticulatedVehicle, kept: Sequence[str]):
-        self.scene, self.kept = scene, kept
-        self._vehicle, self._rows = vehicle, list[list[float]]()
+    def __init__(self, scene: Scene, vehicle: ArticulatedVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
+        self.kept, self._inputs = kept, inputs
+        self._loads, self._rows = Loads(scene), list[list[float]]()
         names = {signal.partition("[")[0] for signal in kept}
         self._of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
         self._of_load = "no_slip_margin_N" in names or bool(scene.vehicle["friction_coefficient"])
@@ -71,20 +73,23 @@ class Rows:
         self.least_margin: tuple[float, float] | None = None  # N, s
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._parts = [(signal, *_split(signal, of_hinge)) for signal in kept]
+        self._follows_commands = bool(names & {ANGLE, CURVATURE})
+        acting = input_signals(scene.vehicle, scene.hinges).keys() - {ANGLE, CURVATURE}
+        self._slots = {signal: vehicle.slot(signal) for signal, name, _ in self._parts if name in acting}
 
     def __len__(self) -> int:
         return len(self._rows)
 
-    def take(self, plant: ArticulatedPlant, row: np.ndarray, given: dict[str, float], time_s: float) -> None:
-        """The outputs at this moment; `row` acts, `given` are the values of the scene's inputs."""
-        motion = plant.motion()
+    def take(self, plant: ArticulatedPlant, row: np.ndarray, tick: int) -> None:
+        """The outputs at the start of a step, in which `row` acts."""
+        motion, given = plant.motion(), self._inputs.held_at(tick) if self._follows_commands else {}
         reactions = None
         if self._of_ground or self._of_load:
-            loads = loads_of(self.scene, motion) if self._of_load else None
+            loads = self._loads.of(motion) if self._of_load else None
             reactions = plant.reactions(row, loads)
         if self._of_load and reactions and (self.least_margin is None
                                             or reactions.no_slip_margin_N < self.least_margin[0]):
-            self.least_margin = reactions.no_slip_margin_N, time_s
+            self.least_margin = reactions.no_slip_margin_N, tick * self._inputs.step_s
         acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
         self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
 
@@ -104,18 +109,14 @@ class Rows:
         if reactions and name == "no_slip_margin_N":
             return reactions.no_slip_margin_N
         if name in ("origin_x_m", "origin_y_m"):
-            return origin_of(self.scene, motion)[int(name == "origin_y_m")]
+            return self._loads.origin_of(motion)[int(name == "origin_y_m")]
         if name == "heading_wrapped_rad":
-            return -((math.pi - motion.heading_rad) % (2.0 * math.pi) - math.pi)
+            return wrapped(motion.heading_rad)
         if name in ("x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "energy_J"):
             return float(getattr(motion, name))
         if name in (ANGLE, CURVATURE):
             return given.get(signal, 0.0)
-        return float(row[self._vehicle.slot(signal)])
-
-    def drop_last(self) -> None:
-        """Takes the last row back."""
-        self._rows.pop()
+        return float(row[self._slots[signal]])
 
     def columns(self) -> dict[str, np.ndarray]:
         """By signal name."""
@@ -127,18 +128,6 @@ def _split(signal: str, of_hinge: dict[str, int]) -> tuple[str, int]:
     name, _, inside = signal.partition("[")
     item = inside.removesuffix("]")
     return name, of_hinge[item] if item in of_hinge else int(item) - 1 if item else 0
-
-
-def origin_of(scene: Scene, motion: ArticulatedMotion) -> tuple[float, float]:
-    """The place of the body frame's origin."""
-    x, y = scene.vehicle["com_x_m"], scene.vehicle["com_y_m"]
-    payload = scene.vehicle.get("payload")
-    if payload:
-        whole = scene.vehicle["mass_kg"] + payload["mass_kg"]
-        x = (scene.vehicle["mass_kg"] * x + payload["mass_kg"] * payload["x_m"]) / whole
-        y = (scene.vehicle["mass_kg"] * y + payload["mass_kg"] * payload["y_m"]) / whole
-    cosine, sine = math.cos(motion.heading_rad), math.sin(motion.heading_rad)
-    return motion.x_m - cosine * x + sine * y, motion.y_m - sine * x - cosine * y
 
 
 def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> ArticulatedPlant:
@@ -188,7 +177,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
     vehicle = scene.articulated_vehicle(core)
     commands = Commands(scene, vehicle, inputs)
     plant = start_plant(scene, vehicle, commands.first_row())
-    rows, refused, last = Rows(scene, vehicle, kept), None, None
+    rows, refused, last = Rows(scene, vehicle, inputs, kept), None, None
     began = time.perf_counter()
     watched = [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
     try:
@@ -198,14 +187,13 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
             last, count = table[-1, 1] if len(table) else last, len(table)
             for at in _stretches(first, count, every):
                 if at % every == 0:
-                    rows.take(plant, table[at - first, 0], inputs.held_at(at), at * scene.run.step_s)
+                    rows.take(plant, table[at - first, 0], at)
                 until = min(first + count, (at // every + 1) * every)
                 _follow(scene, plant, table[at - first : until - first], watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
-        rows.take(plant, commands.row_at(inputs.steps, last), inputs.held_at(inputs.steps), inputs.steps
-                  * scene.run.step_s)
+        rows.take(plant, commands.row_at(inputs.steps, last), inputs.steps)
     except Refused as why:
         if not plant.steps:
             raise why if str(scene.path) in why.message else scene.refusal_in_file(why, "at t = 0 s") from None
@@ -213,8 +201,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
         refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
         if len(rows) <= -(-plant.steps // every):
             with suppress(Refused):  # of reactions at a posture that has none
-                rows.take(plant, commands.row_at(plant.steps, None), inputs.held_at(plant.steps), plant.steps
-                          * scene.run.step_s)
+                rows.take(plant, commands.row_at(plant.steps, None), plant.steps)
     return plant, rows, commands, time.perf_counter() - began, refused
 
 

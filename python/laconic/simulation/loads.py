@@ -8,6 +8,9 @@ share as springs of one stiffness on a rigid body. Accelerations shift no load h
 from __future__ import annotations
 
 import cmath
+import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -15,60 +18,78 @@ from laconic.core.articulated import CARRIAGE, ArticulatedMotion
 from laconic.scene import Scene
 
 GRAVITY_M_PER_S2 = 9.80665
+Frame = tuple[complex, complex]  # origin and direction in the world
+Weights = list[tuple[complex, float]]  # where each acts, and how much
 
 
-def loads_of(scene: Scene, motion: ArticulatedMotion) -> np.ndarray:
-    """The load of each wheel [N], shape (N,)."""
-    names = [CARRIAGE, *(hinge.name for hinge in scene.hinges)]
-    forms = ["", *(hinge.form for hinge in scene.hinges)]
-    parents = [0, *(names.index(body["parent"]) for body in scene.vehicle["body"])]
-    group = [0] * len(names)  # the trailer, or the carriage, with which a body stands
-    for b in range(1, len(names)):
-        group[b] = b if forms[b] == "trailer" else group[parents[b]]
-    frames = _frames(scene, motion)
-    weights: dict[int, list[tuple[complex, float]]] = {g: [] for g in group}
-    for b, (place, newtons) in enumerate(_weights(scene, frames)):
-        weights[group[b]].append((place, newtons))
-    payload = scene.vehicle.get("payload")
-    if payload:
-        weights[0].append((_at(frames[0], payload["x_m"], payload["y_m"]), GRAVITY_M_PER_S2 * payload["mass_kg"]))
-    wheels = scene.vehicle["wheel"]
-    of_wheel = [group[names.index(wheel.get("body", CARRIAGE))] for wheel in wheels]
-    loads = np.zeros(len(wheels))
-    for g in sorted(weights, reverse=True):
-        mine = [i for i, each in enumerate(of_wheel) if each == g]
-        points = [_at(frames[names.index(wheels[i].get("body", CARRIAGE))], wheels[i]["x_m"], wheels[i]["y_m"])
-                  for i in mine]
-        points += [frames[g][0]] if g else [_at(frames[0], each["x_m"], each["y_m"])
-                                            for each in scene.vehicle["support"]]
-        shares = _shares(points, weights[g])
-        loads[mine] = shares[: len(mine)]
-        if g:
-            weights[group[parents[g]]].append((frames[g][0], float(shares[-1])))
-    return loads
+def centre_of(vehicle: Mapping[str, Any]) -> complex:
+    """Centre of mass of body 0 with its payload, in the body frame."""
+    x, y, payload = vehicle["com_x_m"], vehicle["com_y_m"], vehicle.get("payload")
+    if not payload:
+        return complex(x, y)
+    own, more = vehicle["mass_kg"], payload["mass_kg"]
+    whole = own + more
+    return complex((own * x + more * payload["x_m"]) / whole, (own * y + more * payload["y_m"]) / whole)
 
 
-def _frames(scene: Scene, motion: ArticulatedMotion) -> list[tuple[complex, complex]]:
-    """Origin and direction of each body's frame in the world."""
-    from laconic.simulation.articulated import origin_of
+class Loads:
+    """What the loads of a scene's wheels need to know, and the loads in each posture."""
 
-    found = [(complex(*origin_of(scene, motion)), cmath.rect(1.0, motion.heading_rad))]
-    return found + [(complex(x, y), cmath.rect(1.0, heading)) for x, y, heading in zip(
-        motion.body_x_m, motion.body_y_m, motion.body_heading_rad, strict=True)]
+    def __init__(self, scene: Scene):
+        vehicle, names = scene.vehicle, [CARRIAGE, *(hinge.name for hinge in scene.hinges)]
+        forms = ["", *(hinge.form for hinge in scene.hinges)]
+        self._centre = centre_of(vehicle)
+        self._parents = [0, *(names.index(body["parent"]) for body in vehicle["body"])]
+        self._group = [0] * len(names)  # the trailer, or the carriage, with which a body stands
+        for b in range(1, len(names)):
+            self._group[b] = b if forms[b] == "trailer" else self._group[self._parents[b]]
+        self._weights = [(complex(each.get("com_x_m", 0.0), each.get("com_y_m", 0.0)),
+                          GRAVITY_M_PER_S2 * each["mass_kg"]) for each in (vehicle, *vehicle["body"])]
+        payload = vehicle.get("payload")
+        self._payload = [(_place(payload), GRAVITY_M_PER_S2 * payload["mass_kg"])] if payload else []
+        self._wheels = [(names.index(wheel.get("body", CARRIAGE)), _place(wheel)) for wheel in vehicle["wheel"]]
+        self._of_group = {g: [i for i, (b, _) in enumerate(self._wheels) if self._group[b] == g]
+                          for g in sorted(set(self._group), reverse=True)}
+        self._supports = [_place(each) for each in vehicle["support"]]
+
+    def origin_of(self, motion: ArticulatedMotion) -> tuple[float, float]:
+        """The place of the body frame's origin."""
+        x, y = self._centre.real, self._centre.imag
+        cosine, sine = math.cos(motion.heading_rad), math.sin(motion.heading_rad)
+        return motion.x_m - cosine * x + sine * y, motion.y_m - sine * x - cosine * y
+
+    def of(self, motion: ArticulatedMotion) -> np.ndarray:
+        """The load of each wheel [N], shape (N,)."""
+        frames, loads = self._frames(motion), np.zeros(len(self._wheels))
+        weights: dict[int, Weights] = {g: [] for g in self._of_group}
+        for frame, g, (place, newtons) in zip(frames, self._group, self._weights, strict=True):
+            weights[g].append((_at(frame, place), newtons))
+        weights[0] += [(_at(frames[0], place), newtons) for place, newtons in self._payload]
+        for g, wheels in self._of_group.items():  # trailers before what they hang on
+            points = [_at(frames[b], place) for b, place in (self._wheels[i] for i in wheels)]
+            points += [frames[g][0]] if g else [_at(frames[0], place) for place in self._supports]
+            shares = _shares(points, weights[g])
+            loads[wheels] = shares[: len(wheels)]
+            if g:
+                weights[self._group[self._parents[g]]].append((frames[g][0], float(shares[-1])))
+        return loads
+
+    def _frames(self, motion: ArticulatedMotion) -> list[Frame]:
+        """That of each body."""
+        found = [(complex(*self.origin_of(motion)), cmath.rect(1.0, motion.heading_rad))]
+        return found + [(complex(x, y), cmath.rect(1.0, heading)) for x, y, heading in zip(
+            motion.body_x_m, motion.body_y_m, motion.body_heading_rad, strict=True)]
 
 
-def _weights(scene: Scene, frames: list[tuple[complex, complex]]) -> list[tuple[complex, float]]:
-    """Where the weight of each body acts, and how much."""
-    bodies = [scene.vehicle, *scene.vehicle["body"]]
-    return [(_at(frame, body.get("com_x_m", 0.0), body.get("com_y_m", 0.0)), GRAVITY_M_PER_S2 * body["mass_kg"])
-            for frame, body in zip(frames, bodies, strict=True)]
+def _place(table: Mapping[str, Any]) -> complex:
+    return complex(table["x_m"], table["y_m"])
 
 
-def _at(frame: tuple[complex, complex], x_m: float, y_m: float) -> complex:
-    return frame[0] + frame[1] * complex(x_m, y_m)
+def _at(frame: Frame, place: complex) -> complex:
+    return frame[0] + frame[1] * place
 
 
-def _shares(points: list[complex], weights: list[tuple[complex, float]]) -> np.ndarray:
+def _shares(points: list[complex], weights: Weights) -> np.ndarray:
     """Loads of points that balance weights, with the least sum of squares."""
     if not points:
         return np.zeros(0)

@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 
 from laconic.core.articulated import ArticulatedVehicle
+from laconic.core.articulated_input import row_length
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, CURVATURE, RATE, TWIST
@@ -67,7 +68,7 @@ class Commands:
 
     def first_row(self) -> np.ndarray:
         """The inputs at the start, where coordinated wheels point as commanded, within their stops."""
-        row = self._rows(0, 1)[0, 0]
+        row = self._rows(self._given(0, 1))[0, 0]
         if self._steering is not None and self._steering.is_limited:
             slot = self.vehicle.slot(TWIST)
             row[slot : slot + 3] = self._start_twist(self._steering, row[slot : slot + 3])
@@ -76,8 +77,8 @@ class Commands:
     def rows(self, first: int, count: int) -> np.ndarray:
         """Inputs at the start and end of steps `first` … in a row (steps, 2, numbers); steps come in order. Fewer where
         a limit ends the run: then `refused` is set."""
-        found = self._rows(first, count)
-        given = self.inputs.samples(first, count)[:, [0, 2]]
+        given = self._given(first, count)
+        found = self._rows(given)
         end = first + count
         for hinge in self.scene.hinges:
             if hinge.kind == "prescribed" and (f"{ANGLE}[{hinge.name}]" in self._numbers or hinge.has_stops
@@ -99,7 +100,7 @@ class Commands:
 
     def row_at(self, tick: int, before: np.ndarray | None) -> np.ndarray:
         """The inputs at the end of the run: what would act from there on, commands as they are."""
-        row = self._rows(tick, 1)[0, 0]
+        row = self._rows(self._given(tick, 1))[0, 0]
         if before is not None:
             for slot in self._command_slots():
                 row[slot] = before[slot]
@@ -110,9 +111,12 @@ class Commands:
         first = self.vehicle.slot(TWIST)
         return [*slots, first, first + 1, first + 2]
 
-    def _rows(self, first: int, count: int) -> np.ndarray:
-        given = self.inputs.samples(first, count)[:, [0, 2]]
-        found = np.zeros((count, 2, len(self.vehicle.input_row())))
+    def _given(self, first: int, count: int) -> np.ndarray:
+        """The scene's inputs at the start and end of some steps, (steps, 2, signals)."""
+        return self.inputs.samples(first, count)[:, [0, 2]]
+
+    def _rows(self, given: np.ndarray) -> np.ndarray:
+        found = np.zeros((*given.shape[:2], row_length(self.vehicle.core)))
         for at, slot in self._plain:
             found[:, :, slot] = given[:, :, at]
         if self._steering is not None:

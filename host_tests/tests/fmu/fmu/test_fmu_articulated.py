@@ -20,7 +20,7 @@ from laconic.core.articulated import ArticulatedPlant
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
 from laconic.scene import Scene, read_scene
-from laconic.simulation.loads import loads_of
+from laconic.simulation.loads import Loads
 
 VARIANTS = {"fmi2": (2, False), "fmi3": (3, False), "fmi3-scalar": (3, True)}
 EVERY_VARIANT = pytest.mark.parametrize("variant", VARIANTS)
@@ -132,7 +132,7 @@ def same_bits(scene_name: str, variant: str, folder: Path) -> None:
             assert values_of(importer, OF_MOTION) == motion_of(plant)
             end = row + (STEPS * h) * rate
             assert values_of(importer, OF_GROUND) == ground_of(plant, rows_of(scene, end, rate, 1)[0, 0])
-            assert importer.get("wheel_load_N") == pytest.approx(list(loads_of(scene, plant.motion())), rel=1e-9,
+            assert importer.get("wheel_load_N") == pytest.approx(list(Loads(scene).of(plant.motion())), rel=1e-9,
                                                                  abs=1e-9)
         assert max(map(abs, importer.get("wheel_angle_rad"))) > 1e-3
 

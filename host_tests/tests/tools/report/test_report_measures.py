@@ -15,8 +15,8 @@ from laconic.scene import read_scene
 from laconic.scene.methods import EXACT, EXPLICIT, STIFF_8
 from laconic.tools.report import accuracy, drift, single, stability
 from laconic.tools.report.collect import PARTS, Report
-from laconic.tools.report.friction_accuracy import rates_of_peer
 from laconic.tools.report.page import shown
+from laconic.tools.report.peers import rates_of_peer
 from laconic.tools.report.referenced import beats, stiff_states
 from laconic.tools.report.targets import (
     COARSE_S,

@@ -12,14 +12,23 @@ import click
 import numpy as np
 
 from laconic.base.outputs import is_stdout, opened
-from laconic.cli.options import PICTURES, OutputBag, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
+from laconic.cli.options import (
+    PICTURES,
+    OutputBag,
+    OutputFile,
+    SceneName,
+    all_methods,
+    belongs_to,
+    check_step,
+    json_flag,
+    one_of,
+)
 from laconic.cli.streams import warn
 from laconic.core import REALS
-from laconic.core.articulated import method_names
 from laconic.core.estimate import Errors, ErrorSizes
 from laconic.errors import BadInput, Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
-from laconic.scene import METHODS, Scene, read_scene
+from laconic.scene import Scene, read_scene
 from laconic.scene.axle_lines import nearly_one_line
 from laconic.scene.standing import Standing, standing_of
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
@@ -32,7 +41,7 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 
 @click.command("simulate")
 @click.argument("scene", type=SceneName(hinges=True))
-@one_of("--method", tuple(dict.fromkeys((*METHODS, *method_names()))),
+@one_of("--method", all_methods(),
         "Method instead of the scene's; circle and moebius-4 are for vehicles with hinges")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")

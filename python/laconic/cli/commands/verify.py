@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from laconic.base.progress import progress_bar
-from laconic.cli.options import ReferenceOrScene, is_scene, json_flag, one_of
+from laconic.cli.options import ReferenceOrScene, all_methods, is_scene, json_flag, one_of
 from laconic.core import REALS, Core, load
 from laconic.core.articulated import method_names
 from laconic.errors import BadInput
@@ -34,7 +34,7 @@ METHOD, STEP_S, REAL = "auto", 1e-3, "double"  # where neither the command line 
 
 @click.command("verify")
 @click.argument("reference", type=ReferenceOrScene())
-@one_of("--method", tuple(dict.fromkeys((*METHODS, *method_names()))),
+@one_of("--method", all_methods(),
         f"Method, {METHOD} where nothing is given; a scene's own; circle and moebius-4 are for vehicles with hinges")
 @click.option("--step", "step_s", type=float, metavar="H", help=f"Step in seconds, {STEP_S:g}; a scene's own.")
 @click.option("--real", type=click.Choice(REALS), help=f"Scalar type of the core, {REAL}; a scene's own.")

@@ -19,7 +19,7 @@ THICK = 0.7  # of a wheel, of its radius
 
 def robot(run: Trajectory, timing: Timing) -> tuple[str, str]:
     """The group, and the rules by which the treads turn."""
-    wheels, style = _wheels_of(run, timing, None)
+    wheels, style = _wheels_of(run, timing, CARRIAGE)
     return _body(run) + wheels + _marks(run), style
 
 
@@ -42,12 +42,12 @@ def hung(run: Trajectory, timing: Timing) -> tuple[str, str]:
     return groups, style
 
 
-def _wheels_of(run: Trajectory, timing: Timing, body: str | None) -> tuple[str, str]:
+def _wheels_of(run: Trajectory, timing: Timing, body: str) -> tuple[str, str]:
     """The wheels of one body, and the rules by which their treads turn."""
     vehicle = run.scene.vehicle
     style, wheels = "", ""
     for number, wheel in enumerate(vehicle["wheel"], start=1):
-        if wheel.get("body") != body and (body is not None or wheel.get("body", CARRIAGE) != CARRIAGE):
+        if wheel.get("body", CARRIAGE) != body:
             continue
         radius = wheel.get("radius_m", vehicle["wheel_radius_m"])
         rolled_m = radius * run.columns[f"wheel_angle_rad[{number}]"]

@@ -14,13 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from laconic.robot.importer.axle_lines import straightened
+from laconic.core.spelling import wrapped
+from laconic.robot.importer.axle_lines import lines_of, straightened
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.rigid_body import RigidBody, add_up
 from laconic.robot.importer.robot_tree import BALL, Joint, Link, Robot
-from laconic.robot.importer.steering import FULL_RAD, NEAR, foot_of, has_no_trail, is_kingpin, swivels, turntables
+from laconic.robot.importer.steering import FULL_RAD, NEAR, foot_of, has_no_trail, kind_of, swivels, turntables
 from laconic.robot.importer.wheels import FoundWheel, Ground
-from laconic.scene.axle_lines import WITHIN_RAD, Line, are_parallel, common_line
+from laconic.scene.axle_lines import WITHIN_RAD, are_parallel, common_line
 
 FREE, PRESCRIBED, COORDINATED = "free", "prescribed", "coordinated"
 SAME, SAME_M = 1e-3, 1e-3  # of radii and inertias; of distances
@@ -88,7 +89,7 @@ class HungBody:
 
 def within_pi(angle_rad: float) -> float:
     """In (−π, π]; 0 for rounding."""
-    angle = -((np.pi - angle_rad) % (2.0 * np.pi) - np.pi)
+    angle = wrapped(angle_rad)
     return 0.0 if abs(angle) < 1e-9 else float(angle)
 
 
@@ -118,7 +119,7 @@ def ahead_of(ground: Ground) -> Array:
 
 def on_one_axle(wheels: Sequence[FoundWheel], name: str) -> tuple[list[FoundWheel], list[str]]:
     """Wheels on parallel axles, moved onto the one in their middle, about which a tandem turns."""
-    lines = [Line(wheel.hub_m[:2], wheel.axle[:2]) for wheel in wheels]
+    lines = lines_of(wheels)
     if not are_parallel(lines) or common_line(lines):
         return [*wheels], []
     ahead = lines[0].normal
@@ -187,15 +188,7 @@ def _steered(joint: Joint, wheels: Sequence[FoundWheel], hinge: Array) -> tuple[
     """Whether a body follows a command, and why: it has one, or its wheels stand below its axis."""
     if not wheels:
         return bool(joint.commands), f"commanded by {joint.commands[0].what}" if joint.commands else "no command"
-    first = wheels[0]
-    lever = _lever(first, hinge)
-    has_none = has_no_trail(lever, first.radius_m)
-    trail = "zero trail" if has_none else f"trail {1e3 * lever:.0f} mm"
-    if joint.commands:
-        return True, f"{trail}, commanded by {joint.commands[0].what}"
-    if not has_none and is_kingpin(joint, lever, first.radius_m):
-        return True, f"{trail}, as a kingpin has within limits of {np.degrees(joint.range_rad):.0f}°"
-    return has_none, trail if has_none else f"{trail}, no command"
+    return kind_of(joint, _lever(wheels[0], hinge), wheels[0].radius_m)
 
 
 def _lever(wheel: FoundWheel, hinge: Array) -> float:
@@ -212,7 +205,7 @@ def _off(wheel: FoundWheel, ahead: Array) -> float:
 
 
 def _axle_is_common(wheels: Sequence[FoundWheel]) -> bool:
-    return bool(common_line([Line(each.hub_m[:2], each.axle[:2]) for each in wheels]))
+    return bool(common_line(lines_of(wheels)))
 
 
 def _behind(wheels: Sequence[FoundWheel], hinge: Array) -> float:
@@ -242,8 +235,7 @@ def _coordinated(bodies: Sequence[HungBody], ground: Ground, is_fixed: bool) -> 
     steered = [each for each in bodies if each.kind == PRESCRIBED and each.parent == CARRIAGE and each.wheels]
     fixed = 0
     if is_fixed and ground.wheels:
-        lines = [Line(each.hub_m[:2], each.axle[:2]) for each in ground.wheels]
-        fixed = 1 if common_line(lines) else MOST_ROWS
+        fixed = 1 if _axle_is_common(ground.wheels) else MOST_ROWS
     if len(steered) < 2 or fixed + len(steered) <= MOST_ROWS or not all(_can_be_coordinated(each) for each in steered):
         return [*bodies]
     why = "all point along one motion, as they would contradict each other else"
@@ -271,12 +263,10 @@ def _name(joint: str, made: dict[str, HungBody]) -> str:
 
 def links_of_carriage(robot: Robot, bodies: Sequence[HungBody]) -> list[Link]:
     """All that hangs on no hinge."""
-    away = {link.name for body in bodies for link in body.links}
+    away = names_on_hinges(bodies)
     return [link for name, link in robot.links.items() if name not in away]
 
 
-def is_on_hinge(robot: Robot, link: str, bodies: Sequence[HungBody]) -> bool:
-    """Whether a link turns with a body, and is no support of the carriage."""
-    hinges = [body.joint for body in bodies]
-    joint = robot.joint_above.get(link)
-    return joint is not None and (joint in hinges or any(each in hinges for each in robot.chain(joint)))
+def names_on_hinges(bodies: Sequence[HungBody]) -> set[str]:
+    """Of the links that turn with a body, and are no supports of the carriage."""
+    return {link.name for body in bodies for link in body.links}

@@ -6,6 +6,7 @@ steers, the torques of the two sides differ for half a second.
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -257,7 +258,7 @@ def _reached(plan: Plan, data: Mapping[str, Any], where: Any, inputs: Tables, un
     tables = {**data, "input": inputs, "run": {"duration_s": round(until_s, 6), "step_s": STEP_S}}
     tables["input"] = [_within(each, until_s) for each in (*inputs, *data["input"])]
     try:
-        scene = scene_of(Table(where, "", _copied(tables)))
+        scene = scene_of(Table(where, "", copy.deepcopy(tables)))
         columns = simulate(scene, ("velocity_body_m_per_s", "yaw_rate_rad_per_s")).columns
     except (Refused, BadInput):
         return None
@@ -272,12 +273,6 @@ def _within(table: dict[str, Any], until_s: float) -> dict[str, Any]:
     if count == 1:  # none is reached: it has its first value throughout
         return {**table, "t_s": [0.0], "value": table["value"][:1]}
     return {**table, "t_s": table["t_s"][:count], "value": table["value"][:count]}
-
-
-def _copied(tables: Mapping[str, Any]) -> dict[str, Any]:
-    import copy
-
-    return copy.deepcopy(dict(tables))
 
 
 # ------------------------------------------------------------------------------------------ steering

@@ -254,11 +254,13 @@ def rate_of(body: HungBody) -> float:
 def rigid_table(vehicle: Mapping[str, Any], placed: Sequence[Placed], mass_kg: float, com_m: Array
                 ) -> dict[str, Any]:
     """The vehicle as it stands in the file's zero position, on wheels that carry a load: for its loads at rest."""
-    wheels = [{**vehicle["wheel"][at], "kind": "fixed", "x_m": float(each.wheel.hub_m[0]),
-               "y_m": float(each.wheel.hub_m[1]), "axle_rad": each.wheel.axle_rad, "body": CARRIAGE,
+    wheels = [{**_without_body(vehicle["wheel"][at]), "kind": "fixed", "x_m": float(each.wheel.hub_m[0]),
+               "y_m": float(each.wheel.hub_m[1]), "axle_rad": each.wheel.axle_rad,
                "inertia_kgm2": 1.0}  # of no effect at rest; a caster's may be 0
               for at, each in enumerate(placed)]
-    for wheel in wheels:
-        wheel.pop("body")
-    rigid = {key: value for key, value in vehicle.items() if key != "body"}
-    return {**rigid, "wheel": wheels, "mass_kg": mass_kg, "com_x_m": float(com_m[0]), "com_y_m": float(com_m[1])}
+    return {**_without_body(vehicle), "wheel": wheels, "mass_kg": mass_kg, "com_x_m": float(com_m[0]),
+            "com_y_m": float(com_m[1])}
+
+
+def _without_body(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key != "body"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import replace
 from typing import Any
 
@@ -12,13 +13,12 @@ from laconic.robot.importer.dropped import idle_of
 from laconic.robot.importer.hung import ahead_of, hung_of, links_of_carriage
 from laconic.robot.importer.hung_push import SHORTEST_S, STEP_S, Plan, drive, shortened
 from laconic.robot.importer.hung_scene import HungTables, rigid_table
-from laconic.robot.importer.imported_scene import Imported, Writer, _path, _rounded, in_one_line
+from laconic.robot.importer.imported_scene import Imported, Writer, _rounded
 from laconic.robot.importer.rigid_body import add_up
 from laconic.robot.importer.rollers import Kind
 from laconic.robot.importer.supports import find_supports
 from laconic.robot.importer.wheels import FoundWheel
 from laconic.scene import Scene, scene_of
-from laconic.scene.scene_text import lines_of
 from laconic.scene.standing import Standing, standing_of
 from laconic.scene.table import Table
 
@@ -71,15 +71,7 @@ class HungWriter(Writer):
             self.comments["input", str(at), "signal"] = f"assumption: {words}"
         data["run"] = {"duration_s": driven.duration_s, "step_s": STEP_S}
         self.check_run(data)
-        assumed = [f"{_path(where)}: {why}" for where, why in self.comments.items() if why.startswith("assumption")
-                   and where[-1] != "kind"]
-        for index, (each, load_N) in enumerate(zip(self.supports, standing.support_N, strict=True)):
-            self.comments["vehicle", "support", str(index), "x_m"] = f"{each.why}; carries {standing.share(load_N)}"
-        comments = {where: in_one_line(why) for where, why in self.comments.items()}
-        text = "\n".join([*map(in_one_line, self.head()), *lines_of(data, comments)]) + "\n"
-        lines, hinges, remarks, assumptions, supports = (tuple(map(in_one_line, each)) for each in (
-            self.words(), self.tables.words(), self.remarks, assumed, self.words_of_supports(standing)))
-        return Imported(self.robot.name, text, lines, assumptions, remarks, supports, standing, hinges)
+        return self.written(data, standing, self.tables.words())
 
     def vehicle(self) -> dict[str, Any]:
         """`[vehicle]` is the carriage alone; then wheels, bodies, supports."""
@@ -135,8 +127,6 @@ class HungWriter(Writer):
 
     def checked(self, data: dict[str, Any]) -> Scene:
         """The scene that the tables make, at its start; what the core refuses is BadInput, by the robot's file."""
-        import copy
-
         try:
             scene = scene_of(Table(self.robot.path, "", copy.deepcopy(data)))
             scene.articulated_vehicle(scene.core())

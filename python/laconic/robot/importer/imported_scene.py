@@ -152,15 +152,19 @@ class Writer:
         if slips:
             data["outputs"] = {"every_s": STEP_S, "signals": self.signals(data)}
         self.checked(data)
+        return self.written(data, standing)
+
+    def written(self, data: dict[str, Any], standing: Standing, hinges: Sequence[str] = ()) -> Imported:
+        """The tables as text with their comments, and what is told besides."""
         assumed = [f"{_path(where)}: {why}" for where, why in self.comments.items()
                    if why.startswith("assumption") and where[-1] != "kind"]  # of kinds, words() tells
         for index, (each, load_N) in enumerate(zip(self.supports, standing.support_N, strict=True)):
             self.comments["vehicle", "support", str(index), "x_m"] = f"{each.why}; carries {standing.share(load_N)}"
         comments = {where: in_one_line(why) for where, why in self.comments.items()}
         text = "\n".join([*map(in_one_line, self.head()), *lines_of(data, comments)]) + "\n"
-        words, remarks = tuple(map(in_one_line, self.words())), tuple(map(in_one_line, self.remarks))
-        supports = tuple(in_one_line(each) for each in self.words_of_supports(standing))
-        return Imported(self.robot.name, text, words, tuple(map(in_one_line, assumed)), remarks, supports, standing)
+        words, assumptions, remarks, supports, hung = (tuple(map(in_one_line, each)) for each in (
+            self.words(), assumed, self.remarks, self.words_of_supports(standing), hinges))
+        return Imported(self.robot.name, text, words, assumptions, remarks, supports, standing, hung)
 
     def signals(self, data: dict[str, Any]) -> list[str]:
         """The usual outputs, and the loads, by which wheels grip or slip."""

@@ -76,7 +76,10 @@ def swivel_of(robot: Robot, wheel: Joint, hub_m: Array, axle: Array, radius_m: f
     if joint is None:
         return None
     trail = _trail(joint, hub_m, axle, radius_m)
-    return Swivel(joint, *_kind(joint, trail, radius_m), trail)
+    is_steered, why = kind_of(joint, trail, radius_m)
+    if not is_steered and joint.range_rad < FULL_RAD:
+        why += f", turns within limits of {np.degrees(joint.range_rad):.0f}°"
+    return Swivel(joint, is_steered, why, trail)
 
 
 def _trail(joint: Joint, hub_m: Array, axle: Array, radius_m: float) -> float:
@@ -86,8 +89,8 @@ def _trail(joint: Joint, hub_m: Array, axle: Array, radius_m: float) -> float:
     return float(abs((hub_m - foot)[:2] @ rolling))
 
 
-def _kind(joint: Joint, trail_m: float, radius_m: float) -> tuple[bool, str]:
-    """Whether it steers, and why."""
+def kind_of(joint: Joint, trail_m: float, radius_m: float) -> tuple[bool, str]:
+    """Whether a joint above a wheel steers it, and why."""
     has_none = has_no_trail(trail_m, radius_m)
     trail = "zero trail" if has_none else f"trail {1e3 * trail_m:.0f} mm"
     if joint.commands:
@@ -96,5 +99,4 @@ def _kind(joint: Joint, trail_m: float, radius_m: float) -> tuple[bool, str]:
         return True, trail
     if is_kingpin(joint, trail_m, radius_m):
         return True, f"{trail}, as a kingpin has within limits of {np.degrees(joint.range_rad):.0f}°"
-    limits = f", turns within limits of {np.degrees(joint.range_rad):.0f}°" if joint.range_rad < FULL_RAD else ""
-    return False, f"{trail}, no command{limits}"
+    return False, f"{trail}, no command"

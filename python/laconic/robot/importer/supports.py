@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from laconic.robot.importer.hung import HungBody, is_on_hinge
+from laconic.robot.importer.hung import HungBody, names_on_hinges
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import BALL, FIXED, SLIDE, Link, Robot, Shape
 from laconic.robot.importer.steering import NEAR, Swivel
@@ -41,7 +41,7 @@ def find_supports(robot: Robot, ground: Ground, bodies: Sequence[HungBody] = ())
     ground = replace(ground, wheels=(*ground.wheels, *(wheel for body in bodies for wheel in body.wheels)))
     turning = {link.name for wheel in (*ground.wheels, *ground.casters)
                for link in robot.below(wheel.joint, rigid=False)}
-    smallest = min(wheel.radius_m for wheel in ground.wheels)
+    smallest, on_hinges = min(wheel.radius_m for wheel in ground.wheels), names_on_hinges(bodies)
     for link in robot.links.values():
         if link.name in turning:
             continue
@@ -50,7 +50,7 @@ def find_supports(robot: Robot, ground: Ground, bodies: Sequence[HungBody] = ())
         if not touching:
             continue
         carrying = [shape for shape in touching if not _why_none(link, shape, ground, smallest)]
-        if carrying and is_on_hinge(robot, link.name, bodies):
+        if carrying and link.name in on_hinges:
             remarks.append(f"link {link.name} touches the ground and turns on a hinge; only supports of the carriage "
                            "count, so it carries nothing")
             continue

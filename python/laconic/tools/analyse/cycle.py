@@ -15,6 +15,12 @@ from laconic.tools.analyse.field import Field
 
 # ---- Andronov–Hopf points: where they lie, and the first Lyapunov coefficient, whose sign decides where a cycle
 # exists.
+#
+# The vector field is exactly quadratic, so the coefficient needs no third derivatives:
+#     l1 = Re[ −2 ⟨p, B(q, J⁻¹ B(q, q̄))⟩ + ⟨p, B(q̄, (2iΩ − J)⁻¹ B(q, q))⟩ ] / (2Ω),
+# B = 2 q(·,·), J q = iΩ q, Jᵀ p = −iΩ p, ⟨p, q⟩ = 1. Negative: a stable cycle around the unstable motion
+# (supercritical); positive: an unstable cycle around the still stable one (subcritical). With |q| = 1 in ζ, whose norm
+# is the energy's, it is in 1/s · (s/rad)²; only its sign has a meaning of its own.
 
 @dataclass(frozen=True)
 class HopfPoint:

@@ -15,9 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from laconic.core.spelling import wrapped
 from laconic.errors import BadInput, nearest_of
 from laconic.scene import Scene
 from laconic.scene.hinges import Hinge
+from laconic.simulation.loads import centre_of
 
 TINY = 1e-9          # of a length or a direction: rounding
 SCANNED = 2000       # turns from straight ahead to the spot
@@ -129,7 +131,7 @@ class Tree:
         return min(choices, key=lambda each: abs(each.angle_rad or 0.0))
 
     def _at(self, limb: Limb, angle: float, q: complex, omega: float) -> BodyCircle:
-        angle = -((math.pi - angle) % (2.0 * math.pi) - math.pi)
+        angle = wrapped(angle)
         velocity = q * cmath.exp(-1j * angle)
         axle = limb.axles[0] if limb.axles else None
         growth = dot(axle.direction, 1j * velocity) / axle.lever if axle and limb.follows else None
@@ -214,7 +216,7 @@ def tree_of(scene: Scene) -> Tree:
     carriage = _axles(vehicle["wheel"], None)
     lengths = [abs(axle.place) for axle in carriage] + [abs(limb.place) + abs(limb.middle) for limb in limbs]
     straight, turn = _allowed(scene, carriage)
-    return Tree(scene, carriage, tuple(limbs), straight, turn, _centre(vehicle), max([*lengths, 1e-3]))
+    return Tree(scene, carriage, tuple(limbs), straight, turn, centre_of(vehicle), max([*lengths, 1e-3]))
 
 
 def _axles(wheels: Sequence[Mapping[str, Any]], body: str | None) -> tuple[Axle, ...]:
@@ -246,13 +248,3 @@ def _allowed(scene: Scene, carriage: Sequence[Axle]) -> tuple[complex, complex |
     if np.abs(rows @ turn + levers).max() > TINY * max(1.0, float(np.abs(levers).max())):
         return direction, None
     return direction, complex(*(0.0 if abs(part) < TINY else part for part in turn))
-
-
-def _centre(vehicle: Mapping[str, Any]) -> complex:
-    """Centre of mass of body 0 with its payload."""
-    own = complex(vehicle["com_x_m"], vehicle["com_y_m"])
-    payload = vehicle.get("payload")
-    if not payload:
-        return own
-    mass, more = vehicle["mass_kg"], payload["mass_kg"]
-    return complex((mass * own + more * complex(payload["x_m"], payload["y_m"])) / (mass + more))

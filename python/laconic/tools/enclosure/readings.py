@@ -14,9 +14,9 @@ from typing import Any
 from laconic.errors import BadInput, reason_of
 from laconic.scene import Scene
 from laconic.scene.ground import slips
+from laconic.scene.hinges import check_without_hinges
 from laconic.scene.inputs import as_written
 from laconic.scene.keys import MOTOR_CIRCUITS
-from laconic.scene.scene import check_without_hinges
 from laconic.scene.table import entries_of
 from laconic.tools.enclosure.balls import ball, times
 from laconic.tools.enclosure.equation import Stretch, angle, equation_of

@@ -26,8 +26,7 @@ from laconic.can.rig.scaled import Voltages, await_answers, groups_of
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.errors import LaconicError
 from laconic.scene import Scene, read_scene
-from laconic.tools.report.nodes import paired_buses
-from laconic.tools.report.watched_ends import Row, WatchedLink, WatchedNode
+from laconic.tools.report.watched_ends import Row, WatchedLink, WatchedNode, paired_buses
 
 SCENE = "s1"
 WATCHDOG_MS = 50

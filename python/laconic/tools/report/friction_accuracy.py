@@ -7,11 +7,9 @@ solutions with an independent solver).
 
 from __future__ import annotations
 
-import ctypes
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,24 +21,6 @@ from laconic.scene import Scene, read_scene
 from laconic.scene.inputs import Input
 from laconic.scene.scene import Initial
 from laconic.tools.report.friction_cost import DRIVE, GROUND, restless
-from laconic.tools.report.peers import SOURCES, compile_peer, course_of
-
-# ---- Compares the C right-hand side of the peers with the numpy reference: all integrate the same equations.
-
-def rates_of_peer(scene: Scene, folder: Path, states: int = 20, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """Rates at random states by the C source and by the reference."""
-    course, random = course_of(scene), np.random.default_rng(seed)
-    library = compile_peer(folder, "rhs", course, [SOURCES / "rhs.c"], ["m"])
-    found, expected = [], []
-    names = [f"voltage_V[{i + 1}]" for i in range(course.voltages_V.shape[1])]
-    for state in random.normal(size=(states, len(course.start))):
-        rates, held = np.empty_like(state), course.voltages_V[0].copy()
-        library.peer_derivative(*(ctypes.c_void_p(a.ctypes.data) for a in (state, held, rates)))
-        found.append(rates)
-        terms = course.reference.forcing_terms(dict(zip(names, held, strict=True)))
-        expected.append(course.reference.rates(state, terms))
-    return np.array(found), np.array(expected)
-
 
 Row = dict[str, Any]
 

@@ -16,13 +16,12 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from laconic.core import Core
-from laconic.core.articulated import CARRIAGE, ArticulatedPlant, ArticulatedVehicle
+from laconic.core.articulated import CARRIAGE, HINGES, ArticulatedPlant, ArticulatedVehicle
+from laconic.core.articulated_input import member_of
 from laconic.errors import BadInput, Refused
-from laconic.scene import MOST_STEPS
 from laconic.scene.table import Table
-from laconic.tools.verify.trajectories import decimal, error_of, step_that_fits
+from laconic.tools.verify.trajectories import decimal, error_of, held_of, steps_of
 
-KINDS = ("free", "motor", "prescribed", "coordinated")
 STATE = (("velocity", "velocity"), ("pose", "pose"), ("psi", "hinge_angle"), ("hinge_rate", "hinge_rate"),
          ("chi", "wheel"))
 
@@ -76,7 +75,7 @@ def _body(table: Table, number: int) -> dict[str, Any]:
     joint = table.table("joint", required=True)
     (x_m, y_m), (com_x_m, com_y_m) = table.numbers("hinge", 2), table.numbers("com", 2)
     keys = {"damping": "damping_Nms", "stiffness": "stiffness_Nm", "rest": "rest_rad", "gain": "gain_Nm_per_V"}
-    return {"name": _name(number), "parent": _name(parent), "hinge": joint.choice("kind", KINDS), "hinge_x_m": x_m,
+    return {"name": _name(number), "parent": _name(parent), "hinge": joint.choice("kind", HINGES), "hinge_x_m": x_m,
             "hinge_y_m": y_m, "mass_kg": table.number("mass"), "com_x_m": com_x_m, "com_y_m": com_y_m,
             "yaw_inertia_kgm2": table.number("inertia"),
             **{name: joint.number(key, 0.0) for key, name in keys.items()}}
@@ -95,17 +94,9 @@ def _wheel(table: Table, bodies: int) -> dict[str, Any]:
     return wheel | ({"locked": True} if table.has("locked") and table.flag("locked") else {})
 
 
-def held_of(segment: Table, vehicle: ArticulatedVehicle) -> dict[str, Any]:
+def held_with_hinges(segment: Table, vehicle: ArticulatedVehicle) -> dict[str, Any]:
     """What a segment holds, by the names of inputs."""
-    held: dict[str, Any] = {}
-    if segment.has("U"):
-        held["voltage_V"] = segment.numbers("U", vehicle.wheel_count)
-    if segment.has("body_wrench"):
-        *held["body_force_N"], held["body_moment_Nm"] = segment.numbers("body_wrench", 3)
-    if segment.has("world_force"):
-        held["world_force_N"] = segment.numbers("world_force", 2)
-    if segment.has("point"):
-        held["world_force_point_m"] = segment.numbers("point", 2)
+    held = held_of(segment, vehicle.wheel_count)
     for key, name in (("hinge_U", "hinge_voltage_V"), ("hinge_torque", "hinge_torque_Nm")):
         for number in _by_hinge(segment, key, vehicle):
             held[f"{name}[{_name(number)}]"] = segment.table(key).number(str(number))
@@ -123,15 +114,12 @@ def _by_hinge(segment: Table, key: str, vehicle: ArticulatedVehicle) -> list[int
 
 def polynomials_of(segment: Table, core: Core, vehicle: ArticulatedVehicle) -> dict[int, tuple[int, np.ndarray]]:
     """Rates and twists: where they stand in a row → where their derivative stands, and their coefficients."""
-    fields = dict(core.ffi.typeof("laconic_articulated_input").fields)
-
-    def place(name: str, item: int) -> int:
-        return int(fields[name].offset) // int(core.dtype.itemsize) + item
-
+    rates, accelerations, twists, twist_rates = (member_of(core, name)[0] for name in (
+        "hinge_rate_rad_per_s", "hinge_acceleration_rad_per_s2", "twist", "twist_rate"))
     found = {}
     for number in _by_hinge(segment, "hinge_rate", vehicle):
         values = np.array(segment.table("hinge_rate").numbers(str(number)) or (0.0,))
-        found[place("hinge_rate_rad_per_s", number - 1)] = (place("hinge_acceleration_rad_per_s2", number - 1), values)
+        found[rates + number - 1] = (accelerations + number - 1, values)
     if segment.has("twist"):
         rows = segment.value("twist", ..., (list,), "three lists of coefficients")
         inner = Table(segment.path, segment.name("twist"), {str(i): row for i, row in enumerate(rows, 1)})
@@ -139,7 +127,7 @@ def polynomials_of(segment: Table, core: Core, vehicle: ArticulatedVehicle) -> d
             segment.fail("twist", f"has {len(rows)} lists; give three: ξ, η, yaw")
         for i in range(3):
             values = np.array(inner.numbers(str(i + 1)) or (0.0,))
-            found[place("twist", i)] = (place("twist_rate", i), values)
+            found[twists + i] = (twist_rates + i, values)
     return found
 
 
@@ -180,12 +168,8 @@ def follow(core: Core, vehicle: ArticulatedVehicle, case: Table, method: str, st
         case.fail("segments", "holds none; give at least one")
     states, seconds = [], 0.0
     for segment in segments:
-        duration_s = segment.number("duration")
-        if not 0.0 < duration_s < MOST_STEPS * step_s:
-            segment.fail("duration", f"{duration_s:g} s takes no number of steps of {step_s:g} s; give a time above "
-                         "zero that can be counted in them")
-        steps, fitting = step_that_fits(duration_s, step_s)
-        base = vehicle.input_row(held_of(segment, vehicle)).astype(float)
+        steps, fitting = steps_of(segment, step_s)
+        base = vehicle.input_row(held_with_hinges(segment, vehicle)).astype(float)
         rows = rows_of(base, polynomials_of(segment, core, vehicle), fitting, steps).astype(core.dtype)
         if plant is None:
             plant = start_case(vehicle, case, method, fitting, rows[0, 0])

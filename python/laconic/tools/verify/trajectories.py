@@ -114,6 +114,15 @@ def step_that_fits(duration_s: float, step_s: float) -> tuple[int, float]:
     return steps, step_s if fits else duration_s / steps
 
 
+def steps_of(segment: Table, step_s: float) -> tuple[int, float]:
+    """The number of steps in a segment, and the step; fails where they cannot be counted."""
+    duration_s = segment.number("duration")
+    if not 0.0 < duration_s < MOST_STEPS * step_s:
+        segment.fail("duration", f"{duration_s:g} s takes no number of steps of {step_s:g} s; give a time above zero "
+                     "that can be counted in them")
+    return step_that_fits(duration_s, step_s)
+
+
 def start_case(core: Core, case: Table, method: str, step_s: float) -> Plant:
     """The case's vehicle at its start."""
     initial = case.table("initial", required=True)
@@ -130,11 +139,7 @@ def follow(plant: Plant, case: Table, step_s: float, advance: Callable[[], None]
         case.fail("segments", "holds none; give at least one")
     for segment in segments:
         held = plant.input_of(held_of(segment, plant.wheel_count))
-        duration_s = segment.number("duration")
-        if not 0.0 < duration_s < MOST_STEPS * step_s:
-            segment.fail("duration", f"{duration_s:g} s takes no number of steps of {step_s:g} s; give a time above "
-                         "zero that can be counted in them")
-        steps, fitting = step_that_fits(duration_s, step_s)
+        steps, fitting = steps_of(segment, step_s)
         began = time.perf_counter()
         plant.set_step(fitting)
         plant.run(held, steps)
