@@ -15,7 +15,7 @@ import numpy as np
 
 from laconic.can.play.vehicle import moved_inertia
 from laconic.errors import BadInput, Refused
-from laconic.ros2.motion import Motion, Seen, motion_of
+from laconic.ros2.motion import Motion, Seen, motion_of, product
 from laconic.scene import Scene
 from laconic.scene.base import BaseTable, has_motor
 
@@ -118,7 +118,7 @@ class Base:
         """Takes steps of all robots; returns those whose step the core refused, which stand still from then on."""
         loop, step_s, refused = self.loop, self.step_s, []
         for _ in range(steps):
-            if self._set is not self._wanted and (self._set != self._wanted).any():
+            if (self._set != self._wanted).any():
                 self._ramp()
                 self._set_speeds = self._speeds_of(self._set)
             error = self._set_speeds - self._speeds
@@ -150,9 +150,7 @@ class Base:
         self._set = np.where(np.abs(self._wanted - self._set - change) < 1e-15, self._wanted, self._set + change)
 
     def _speeds_of(self, velocity: np.ndarray) -> np.ndarray:
-        rows = self.beliefs.rows
-        found: np.ndarray = rows[:, 0:1] * velocity[0] + rows[:, 1:2] * velocity[1] + rows[:, 2:3] * velocity[2]
-        return found
+        return product(self.beliefs.rows, velocity)
 
     # ---- what there is to see
 

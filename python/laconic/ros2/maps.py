@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from laconic.base.text_file import text_of_file
 from laconic.errors import BadInput, reason_of
 from laconic.ros2.messages import new
+from laconic.ros2.motion import Seen
+from laconic.ros2.node import NANO, Out, RobotNode
 from laconic.ros2.wire import LATCHED
-
-if TYPE_CHECKING:
-    from laconic.ros2.motion import Seen
-    from laconic.ros2.node import RobotNode
 
 KEYS = ("image", "resolution", "origin")
 RAYS = 360
@@ -24,7 +22,6 @@ RANGE_LEAST_M, RANGE_MOST_M = 0.12, 12.0
 SCAN_S = 0.1
 OCCUPIED, FREE, UNKNOWN = 100, 0, -1
 MOST_CELLS = 10**8
-NANO = 10**9
 
 
 @dataclass(frozen=True)
@@ -76,8 +73,6 @@ class Scanner:
     """Publishes the map once, and each robot's scan ten times a second."""
 
     def __init__(self, world: Map, robots: list[RobotNode]):
-        from laconic.ros2.node import Out
-
         self.world, self._next_ns = world, [-1] * len(robots)
         self._angles = np.linspace(-math.pi, math.pi, RAYS, endpoint=False)
         first = robots[0]

@@ -212,6 +212,7 @@ def new(kind: str, /, **values: Any) -> Any:
 
 # ---- hashes
 
+@cache
 def type_hash(name: str, gid_bytes: int = 16) -> str:
     """RIHS01: SHA-256 of the type's description as JSON, with those of all types in it (REP 2011)."""
     known = definitions(gid_bytes)

@@ -79,6 +79,12 @@ def turning(scene: Scene) -> np.ndarray:
     return np.array([bool(wheel["driven"] and not wheel["locked"]) for wheel in scene.vehicle["wheel"]])
 
 
+def product(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """(N, robots) of (N, 3) and (3, robots), by operations whose bits do not depend on how many robots there are."""
+    found: np.ndarray = rows[:, 0:1] * columns[0] + rows[:, 1:2] * columns[1] + rows[:, 2:3] * columns[2]
+    return found
+
+
 class Geometry:
     """Numbers of a scene that both kinds of motion need."""
 
@@ -96,10 +102,8 @@ class Geometry:
         self.signal = "voltage_V" if has_motor(scene.vehicle) else "axle_torque_Nm"
 
     def speeds(self, nu: np.ndarray) -> np.ndarray:
-        """Wheel speeds (N, robots) of ν (3, robots), by operations whose bits do not depend on how many there are."""
-        of_nu = self.of_nu
-        found: np.ndarray = of_nu[:, 0:1] * nu[0] + of_nu[:, 1:2] * nu[1] + of_nu[:, 2:3] * nu[2]
-        return found
+        """Wheel speeds (N, robots) of ν (3, robots)."""
+        return product(self.of_nu, nu)
 
     def start(self, x_m: float, y_m: float, heading_rad: float) -> Initial:
         """At rest with the body frame at a pose."""

@@ -22,12 +22,12 @@ from laconic.ros2.wire import (
     sent,
     topic_name,
 )
+from laconic.scene.base import usual_joints
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 POSE_STAMPED = "geometry_msgs/msg/PoseWithCovarianceStamped"
 ODOMETRY, TRANSFORM = "nav_msgs/msg/Odometry", "geometry_msgs/msg/TransformStamped"
 NODE_NAME = "laconic"
-UNKNOWN = -1.0                      # first covariance of what a sensor does not measure
 SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and across, yaw rate, out of the plane
 OK, WARN, ERROR, STALE = range(4)   # levels of diagnostics
 NANO = 10**9
@@ -99,7 +99,7 @@ class RobotNode:
         stream = self._stream
         self._odom = OdometryOut(node, "odom", frames["odom"], frames["base"], SURE, stream)
         self._truth = OdometryOut(node, "ground_truth/odom", frames["map"], frames["base"], 0.0, stream)
-        names = list(self.base.table.joint_names) or [f"wheel_{number}_joint" for number in range(1, wheels + 1)]
+        names = list(self.base.table.joint_names) or usual_joints(wheels)
         self.joint_names = names
         joints = new("sensor_msgs/msg/JointState", name=names, position=[0.0] * wheels, velocity=[0.0] * wheels)
         self._joints = Out(node, "joint_states", "sensor_msgs/msg/JointState", joints, stream)
@@ -120,6 +120,7 @@ class RobotNode:
                         self._tf.packed.slot(f"transforms[{number}].transform.rotation.z", "2d"))
                        for number in range(len(links))]
         self._battery = self._supply() if self.base.scene.vehicle.get("drive", {}).get("supply_V") else None
+        self._drawn = [self._battery.packed.slot(name, "f") for name in ("voltage", "current")] if self._battery else []
         imu_table = self.base.scene.sensors.imu or {}
         fixed = [transform(frames["base"], frames["imu"], imu_table.get("x_m", 0.0), imu_table.get("y_m", 0.0),
                            imu_table.get("heading_rad", 0.0))]
@@ -153,21 +154,22 @@ class RobotNode:
         self._joints.write(stamp)
         ahead, left, rate = seen.imu
         self.heading_rad += rate * period_s
-        self._turned.put(math.sin(0.5 * self.heading_rad), math.cos(0.5 * self.heading_rad))
+        self._turned.put(*upright(self.heading_rad))
         self._rate.put(rate)
         self._acceleration.put(ahead, left, self._upward)
         self._imu.write(stamp)
         self.messages += 5
         if self._battery is not None and seen.supply is not None:
-            self._battery.packed.slot("voltage", "f").put(seen.supply[0])
-            self._battery.packed.slot("current", "f").put(-seen.supply[1])  # below 0: it discharges
+            voltage, current = self._drawn
+            voltage.put(seen.supply[0])
+            current.put(-seen.supply[1])  # below 0: it discharges
             self._battery.write(stamp)
             self.messages += 1
 
     def _link(self, number: int, pose: tuple[float, float, float]) -> None:
         place, turn = self._links[number]
         place.put(pose[0], pose[1])
-        turn.put(math.sin(0.5 * pose[2]), math.cos(0.5 * pose[2]))
+        turn.put(*upright(pose[2]))
 
     # ---- commands
 
@@ -379,10 +381,15 @@ class OdometryOut:
               velocity: tuple[float, float, float]) -> None:
         """Sends a pose, and a velocity in the child's axes."""
         self._place.put(pose[0], pose[1])
-        self._turn.put(math.sin(0.5 * pose[2]), math.cos(0.5 * pose[2]))
+        self._turn.put(*upright(pose[2]))
         self._velocity.put(velocity[0], velocity[1])
         self._rate.put(velocity[2])
         self.out.write(stamp)
+
+
+def upright(yaw_rad: float) -> tuple[float, float]:
+    """z and w of the quaternion of a turn about the vertical; x and y are 0."""
+    return math.sin(0.5 * yaw_rad), math.cos(0.5 * yaw_rad)
 
 
 def transform(parent: str, child: str, x_m: float = 0.0, y_m: float = 0.0, yaw_rad: float = 0.0) -> Any:
@@ -390,7 +397,7 @@ def transform(parent: str, child: str, x_m: float = 0.0, y_m: float = 0.0, yaw_r
     made = new(TRANSFORM, child_frame_id=child)
     made.header.frame_id = parent
     made.transform.translation.x, made.transform.translation.y = x_m, y_m
-    made.transform.rotation.z, made.transform.rotation.w = math.sin(0.5 * yaw_rad), math.cos(0.5 * yaw_rad)
+    made.transform.rotation.z, made.transform.rotation.w = upright(yaw_rad)
     return made
 
 

@@ -20,7 +20,7 @@ from laconic.ros2 import FRAMES, USUAL_DISTRIBUTION
 from laconic.ros2.base import Base
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
-from laconic.ros2.node import NANO, RobotNode, Told, diagnostics
+from laconic.ros2.node import NANO, Out, RobotNode, Told, diagnostics
 from laconic.ros2.wire import Participant, check_name, sent
 from laconic.scene import Scene
 from laconic.scene.scene_text import lines_of
@@ -117,7 +117,8 @@ class Session:
         self.robots = [self._robot(number) for number in range(options.robots)]
         shared = self.participant.nodes[0]
         self._diagnostics = shared.publisher("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
-        self._clock_out = shared.publisher("/clock", "rosgraph_msgs/msg/Clock") if options.is_sim_time else None
+        kind = "rosgraph_msgs/msg/Clock"
+        self._clock_out = Out(shared, "/clock", kind, new(kind), stamps=("clock",)) if options.is_sim_time else None
         self.scanner = Scanner(self.map, self.robots) if self.map else None
         self.participant.announce()
         self._next_s = dict.fromkeys(("services", "graph", "diagnostics"), -math.inf)
@@ -157,9 +158,7 @@ class Session:
             if self.scanner is not None:
                 self.scanner.see(robot, seen, self.time_ns)
         if self._clock_out is not None:
-            message = new("rosgraph_msgs/msg/Clock")
-            message.clock.sec, message.clock.nanosec = divmod(self.time_ns, NANO)
-            sent(self._clock_out, message)
+            self._clock_out.write(divmod(self.time_ns, NANO))
         self.cycles += 1
         self._housekeeping(now_s)
 

@@ -49,6 +49,11 @@ def read_base(table: Table, vehicle: Mapping[str, Any]) -> BaseTable:
     return found
 
 
+def usual_joints(count: int) -> list[str]:
+    """Names of the wheels' joints where nobody gave others."""
+    return [f"wheel_{number}_joint" for number in range(1, count + 1)]
+
+
 def has_motor(vehicle: Mapping[str, Any]) -> bool:
     """Whether voltages move any wheel of a vehicle."""
     own = any(wheel.get("motor_gain_Nm_per_V") for wheel in vehicle["wheel"])

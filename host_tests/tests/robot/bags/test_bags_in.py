@@ -234,6 +234,41 @@ def test_an_empty_topic_or_field_is_one_line(tmp_path, capsys):
         assert words in refused(capsys, log, scene, "--map", mapped(tmp_path, text))
 
 
+def test_a_topic_without_its_slash_and_a_pose_that_a_ulog_has_not_are_one_line(tmp_path, capsys):
+    log = rosbag1(tmp_path / "run.bag", drive(Messages(is_ros1=True)), Messages(is_ros1=True))
+    scene = scene_of(tmp_path)
+    text = USUAL.replace("/joint", "joint").replace("left_wheel", "left_whel") + 'pose = "mocap/pose"'
+    error = refused(capsys, log, scene, "--map", mapped(tmp_path, text))
+    assert "has no joint left_whel; correct the map" in error
+    of_px4 = ulog(tmp_path / "rover.ulg", {"odometry": (["x", "y"], table()[:, :3])})
+    error = refused(capsys, of_px4, scene, "--map", mapped(tmp_path, 'format = "bag"\npose = "odometri"\n'))
+    assert "has no topic odometri; correct the map (did you mean odometry?)" in error
+
+
+@pytest.mark.parametrize("kind", ["rosbag1", "ulog"])
+def test_a_recording_is_opened_once_for_all_questions(kind, tmp_path, capsys, monkeypatch):
+    from laconic.robot.bags import samples
+
+    log = ulog(tmp_path / "run.ulg", {"odometry": (["x", "y"], table()[:, :3])}) if kind == "ulog" else rosbag1(
+        tmp_path / "run.bag", drive(Messages(is_ros1=True)), Messages(is_ros1=True))
+    opened = []
+
+    def noted(open_one):
+        return lambda path, *names: (opened.append(path), open_one(path, *names))[1]
+
+    for name in ("opened", "load_ulog"):
+        monkeypatch.setattr(samples, name, noted(getattr(samples, name)))
+    assert run(["logs", str(log)]) == 0
+    assert len(opened) == 1
+    if kind == "rosbag1":
+        gather_logs([log], mapped(tmp_path, USUAL + 'pose = "/mocap/pose"'))
+        assert len(opened) == 2
+        assert run(["logs", str(log), "--fields", "/mocap/pose"]) == 0
+        assert len(opened) == 3
+        gather_logs([log])  # guessed first, then read
+        assert len(opened) == 5
+
+
 def test_a_missing_package_is_named_with_its_extra(tmp_path, capsys, monkeypatch):
     messages = Messages()
     log = rosbag2(tmp_path / "run", drive(messages), messages)

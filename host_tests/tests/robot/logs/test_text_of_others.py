@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from laconic.base.text_file import NotText, decoded, text_of_file
 from laconic.errors import BadInput
 from laconic.robot.logs import gather_logs
+from laconic.robot.logs.guess import guess_table, toml_text
 from log_support import (
     CAN_MAP,
     DBC,
@@ -24,6 +26,11 @@ from log_support import (
     refused_log,
     replayed,
 )
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 ENCODINGS = {"UTF-8": lambda text: text.encode(), "UTF-8 with a mark": lambda text: text.encode("utf-8-sig"),
              "UTF-16 with a mark": lambda text: text.encode("utf-16"),
@@ -174,3 +181,12 @@ def test_scales_for_another_number_of_columns_than_the_log_has_are_named(tmp_pat
     text = TEXT_MAP.replace('["left", "right"]', '"w#"\nscales = [1, 1, 1]')
     assert "wheel_angle.scales: has 3 entries for 2 columns; give one for each" in refused_log(
         capsys, log, mapped(tmp_path, text))
+
+
+def test_a_guessed_map_has_the_columns_of_the_log_whatever_signs_their_names_have():
+    t = np.arange(20.0)
+    names = ['left "wheel" pos', "right \\wheel pos", "mocap\U000e0001 x", "mocap\U000e0001 y"]
+    guess = guess_table({"time": 0.1 * t, **{name: t * t + k for k, name in enumerate(names)}}, {})
+    found = tomllib.loads(toml_text(guess, 'the "log"'))
+    assert found == {"name": 'the "log"', **guess.entries}
+    assert found["pose"]["columns"] == names[2:] and found["wheel_angle"]["columns"] == names[:2]

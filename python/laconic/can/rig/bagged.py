@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import can
 import numpy as np
 
 from laconic.can.rig.link import Link
-from laconic.can.rig.wire import Frame, wire
+from laconic.can.rig.wire import WHEELS_A_GROUP, Frame, wire
 from laconic.errors import BadInput
-from laconic.robot.bags.run_topics import RunTopics, open_bag
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
+if TYPE_CHECKING:
+    from laconic.robot.bags.run_topics import RunTopics
+
 LOOK_US = 10_000     # between two instants of a played vehicle
-WHEELS_A_GROUP = 3
 
 
 class FrameTopics:
@@ -56,15 +58,14 @@ class FrameTopics:
         """The signals of a frame; none of one with other contents."""
         if frame.name not in ("POSE", "WHEEL_SPEED", "NU") or (frame.name == "NU" and self._by_nu is None):
             return {}
-        raw = frame.unpack(data)
-        values = {name: number * frame.fields[name].scale for name, number in raw.items() if name in frame.fields}
+        values = frame.physical(data)
         if frame.name == "POSE":
             return {"x_m": values["x"], "y_m": values["y"], "heading_rad": values["heading"]}
         if frame.name == "NU":
             assert self._by_nu is not None
             speeds = self._by_nu @ np.array([values[f"nu_{number}"] for number in (1, 2, 3)])
             return {f"wheel_speed_rad_per_s[{number}]": float(speed) for number, speed in enumerate(speeds, start=1)}
-        first = WHEELS_A_GROUP * raw["group"] + 1
+        first = WHEELS_A_GROUP * int(values["group"]) + 1
         return {f"wheel_speed_rad_per_s[{first + index}]": values[f"wheel_speed_{index + 1}"]
                 for index in range(WHEELS_A_GROUP) if first + index <= self._wheels}
 
@@ -77,7 +78,9 @@ def bagged(link: Link, scene: Scene, id_base: int, mode: str, path: Path | None)
         return
     if mode == "same-bits":
         raise BadInput(f"--bag {path}: needs frames with signals, and --same-bits has raw ones; leave one of them out")
-    steps = iter(range(1, 1 << 62))
+    from laconic.robot.bags.run_topics import RunTopics, open_bag  # where a bag is wanted, and only there
+
+    steps = itertools.count(1)
     began_us = link.clock.now_us()
 
     def now_s() -> float:
@@ -114,5 +117,7 @@ def played_bag(vehicle: Any, scene: Scene, path: Path | None) -> Iterator[list[C
         return
     if (look := getattr(vehicle, "signals", None)) is None:
         raise BadInput(f"--bag {path}: needs a vehicle in this process, whose motion can be seen; leave --board out")
+    from laconic.robot.bags.run_topics import RunTopics, open_bag
+
     with open_bag(path) as bag:
         yield [PlayTopics(RunTopics(scene, bag), look)]

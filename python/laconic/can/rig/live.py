@@ -15,10 +15,9 @@ from rich.table import Table
 from rich.text import Text
 
 from laconic.can.rig.link import Link
-from laconic.can.rig.wire import Frame, wire
+from laconic.can.rig.wire import WHEELS_A_GROUP, Frame, wire
 
 HIDDEN = re.compile("crc|counter|request|data(_[0-9]+)?|segment|group|page")
-WHEELS_A_GROUP = 3
 REFRESHES_PER_S = 10
 AROUND = 6  # lines that are no frames: title, heading with its two rules, last rule, faults
 

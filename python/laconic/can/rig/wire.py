@@ -19,6 +19,7 @@ from laconic.base.paths import SOURCE_DIR
 DBC = SOURCE_DIR / "firmware_stub" / "laconic.dbc"
 ID_BASE = 0x680
 ID_STRIDE = 32
+WHEELS_A_GROUP = 3
 
 
 @dataclass(frozen=True)

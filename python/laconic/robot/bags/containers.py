@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import sqlite3
 import struct
 import tempfile
 from collections.abc import Iterator
-from contextlib import ExitStack, closing, suppress
+from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -227,8 +228,6 @@ class McapFile:
                 if wanted is None or channel in wanted:
                     yield channel, stamp, bytes(body[22:])
             elif code in (3, 4):
-                import io
-
                 stream = ReadDataStream(io.BytesIO(bytes(body)))
                 if code == 3:
                     schema = Schema.read(stream)
@@ -335,6 +334,5 @@ class _Unpacked:
 
     def close(self) -> None:
         """Removes the unpacked file."""
-        with closing(self._inner):
-            pass
+        self._inner.close()
         self._folder.close()

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -101,15 +101,23 @@ def decoder_of(path: Path, topic: str, type_name: str, encoding: str, form: str,
 
     try:
         name = normalize_msgtype(type_name)
-        store = _store_of(name, form, definition)
-        store.get_msgdef(name)
+        types = _store_of(name, form, definition)
+        types.get_msgdef(name)
     except Exception:  # of the parser of a text that is no definition: it has many kinds
         raise BadInput(f"{path}: {topic} is of type {type_name}, whose definition "
                        f"{'is broken' if definition else 'is not in the recording'}; record it anew, with definitions, "
                        "or leave the topic out of the map") from None
     is_cdr = encoding == "cdr"
-    decode = store.deserialize_cdr if is_cdr else store.deserialize_ros1
+    decode = types.deserialize_cdr if is_cdr else types.deserialize_ros1
     return lambda data: decode(data, name)
+
+
+@cache
+def store() -> Any:
+    """The types of ROS 2 itself."""
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY)
 
 
 @lru_cache(maxsize=256)
@@ -118,8 +126,8 @@ def _store_of(name: str, form: str, definition: str) -> Any:
     from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
     if not definition:
-        return get_typestore(Stores.ROS2_JAZZY)
-    store = get_typestore(Stores.EMPTY)
+        return store()
+    found = get_typestore(Stores.EMPTY)
     if form == "idl":
         parts = definition.split(IDL_LINE)[1:] if definition.startswith(IDL_LINE) else [f"\n{definition}"]
         types: dict[str, Any] = {}
@@ -127,8 +135,8 @@ def _store_of(name: str, form: str, definition: str) -> Any:
             types.update(get_types_from_idl(part.split("\n", 1)[1]))
     else:
         types = get_types_from_msg(definition, name)
-    store.register(types)
-    return store
+    found.register(types)
+    return found
 
 
 def field_of(column: str) -> Callable[[Any], Any]:

@@ -7,7 +7,6 @@ import math
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -15,8 +14,11 @@ import numpy as np
 
 from laconic.base.outputs import claims, make_folder
 from laconic.errors import BadInput, reason_of
+from laconic.robot.bags.messages import store
 from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
+from laconic.ros2 import FRAMES
 from laconic.scene import Scene
+from laconic.scene.base import usual_joints
 
 COMMITTED_AT_ONCE = 2000       # messages
 BYTES_OF_CHUNK = 1 << 18
@@ -32,14 +34,6 @@ CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timesta
     data BLOB NOT NULL);
 CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 """
-
-
-@cache
-def store() -> Any:
-    """The types of ROS 2."""
-    from rosbags.typesys import Stores, get_typestore
-
-    return get_typestore(Stores.ROS2_JAZZY)
 
 
 def definition_of(kind: str) -> tuple[str, str]:
@@ -74,17 +68,12 @@ def open_bag(path: Path) -> Iterator[BagWriter]:
     try:
         make_folder(path.parent if path.suffix.lower() == ".mcap" else path)
         writer: BagWriter = McapBag(path) if path.suffix.lower() == ".mcap" else Rosbag2(path)
-    except (OSError, sqlite3.Error) as error:
-        raise _refused(path, error) from None
-    try:
-        yield writer
-    except (OSError, sqlite3.Error) as error:
-        raise _refused(path, error) from None
-    finally:
         try:
+            yield writer
+        finally:
             writer.close()
-        except (OSError, sqlite3.Error) as error:
-            raise _refused(path, error) from None
+    except (OSError, sqlite3.Error) as error:
+        raise _refused(path, error) from None
 
 
 def _refused(path: Path, error: OSError | sqlite3.Error) -> BadInput:
@@ -189,7 +178,7 @@ def _span(indent: str, first_ns: int, length_ns: int) -> list[str]:
             f"{indent}  nanoseconds_since_epoch: {first_ns}"]
 
 
-ODOM, BASE, MAP, IMU = "odom", "base_link", "map", "imu_link"
+ODOM, BASE, MAP, IMU = (FRAMES[name] for name in ("odom", "base", "map", "imu"))
 ODOMETRY, TRANSFORMS = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 JOINTS, IMU_TYPE, NUMBERS = "sensor_msgs/msg/JointState", "sensor_msgs/msg/Imu", "std_msgs/msg/Float64MultiArray"
 UNKNOWN_VARIANCE = -1.0        # in the first place of a covariance: that quantity is not measured
@@ -212,7 +201,7 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        self.joints = [f"wheel_{number}_joint" for number in range(1, scene.wheel_count + 1)]
+        self.joints = usual_joints(scene.wheel_count)
         core = scene.core()
         self._centre = centre_of_mass(core, core.vehicle(scene.vehicle))
         self._rolling = _rolling(scene)

@@ -37,10 +37,8 @@ def name_of(dataset: Any) -> str:
     return dataset.name + (f"#{dataset.multi_id}" if dataset.multi_id else "")
 
 
-def read_ulog(path: Path, wanted: Mapping[str, Sequence[str]]) -> Any:
+def read_ulog(path: Path, wanted: Mapping[str, Sequence[str]]) -> Found:
     """Some fields of some topics."""
-    from laconic.robot.bags.samples import Found, Samples
-
     log = load_ulog(path, [name.partition("#")[0] for name in wanted])
     sets = {name_of(each): each for each in log.data_list}
     found = {}
@@ -144,6 +142,8 @@ def number_of(take: Callable[[Any], Any], message: Any) -> float:
     """A field as a number; of a quaternion its heading; NaN where the message has no such field."""
     try:
         value = take(message)
+        if isinstance(value, (int, float)):  # of nearly all fields: it shall not be looked at for a quaternion
+            return float(value)
         return heading_of(value) if _is_quaternion(value) else float(value)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError, OverflowError):
         return math.nan
@@ -172,7 +172,7 @@ class _Frames:
     def take(self, arrival: int, message: Any) -> None:
         """A message of /tf or /tf_static."""
         for each in message["transforms"] if isinstance(message, dict) else message.transforms:
-            parent, child = (_text(take(each)).lstrip("/") for take in (PARENT, CHILD))
+            parent, child = (str(take(each)).lstrip("/") for take in (PARENT, CHILD))
             edge = self.edges.setdefault((parent, child), _Columns(f"{TF} {parent} → {child}", TRANSFORM))
             edge.take(arrival, each)
 
@@ -191,10 +191,6 @@ class _Frames:
             chain.append((above[at], at))
             at = above[at]
         return chained([self.edges[edge].samples() for edge in reversed(chain)], parent, child)
-
-
-def _text(value: Any) -> str:
-    return str(value)
 
 
 PARENT, CHILD = field_of("header.frame_id"), field_of("child_frame_id")
@@ -228,24 +224,22 @@ class Found:
     remarks: tuple[str, ...]
 
 
-def read_samples(path: Path, wanted: Mapping[str, Sequence[str]], frames: Sequence[Frames] = ()) -> Found:
+def read_samples(path: Path, parts: Sequence[Recording], wanted: Mapping[str, Sequence[str]],
+                 frames: Sequence[Frames] = ()) -> Found:
     """Some fields of some topics, read message by message; BadInput names the topic that is not there or empty."""
     if is_ulog(path):
-        from laconic.robot.bags.samples import read_ulog
-
         return read_ulog(path, wanted)
-    with recordings(path) as parts:
-        topics = all_topics(parts)
-        names = [topic_of(path, topics, name).name for name in wanted]
-        collectors: dict[str, _Columns | _Frames] = {
-            name: _Columns(name, [field_of(each) for each in fields])
-            for name, fields in zip(names, wanted.values(), strict=True)}
-        transforms = _Frames()
-        if frames:
-            collectors |= {name: transforms for name in (TF, TF_STATIC) if name in topics}
-        if frames and TF not in topics and TF_STATIC not in topics:
-            topic_of(path, topics, TF)
-        remarks = _collect(path, parts, topics, collectors)
+    topics = all_topics(parts)
+    names = [topic_of(path, topics, name).name for name in wanted]
+    collectors: dict[str, _Columns | _Frames] = {
+        name: _Columns(name, [field_of(each) for each in fields])
+        for name, fields in zip(names, wanted.values(), strict=True)}
+    transforms = _Frames()
+    if frames:
+        collectors |= {name: transforms for name in (TF, TF_STATIC) if name in topics}
+    if frames and TF not in topics and TF_STATIC not in topics:
+        topic_of(path, topics, TF)
+    remarks = _collect(path, parts, topics, collectors)
     found = {}
     for given, name in zip(wanted, names, strict=True):
         columns = collectors[name]
@@ -286,8 +280,12 @@ def is_ulog(path: Path) -> bool:
 
 @contextmanager
 def recordings(path: Path) -> Iterator[list[Recording]]:
-    """The files of a recording, open."""
+    """The files of a recording, open, for all questions about it; none of a ULog, which is read by a library of its
+    own."""
     found: list[Recording] = []
+    if is_ulog(path):
+        yield found
+        return
     try:
         for part in parts_of(path):
             found.append(opened(part))
@@ -310,6 +308,14 @@ def all_topics(parts: Sequence[Recording]) -> dict[str, Topic]:
     return found
 
 
+def topics_in(path: Path, parts: Sequence[Recording]) -> dict[str, Topic]:
+    """All topics by name; of a ULog without types, with the number of their samples."""
+    if not is_ulog(path):
+        return all_topics(parts)
+    return {name: Topic(name, "", len(each.data.get(CLOCK, ())), lambda: bytes)
+            for name, each in sorted(topics_of_ulog(path).items())}
+
+
 def topic_of(path: Path, topics: Mapping[str, Topic], name: str) -> Topic:
     """A topic by its name, with or without its first slash; BadInput names the nearest one."""
     found = topics.get(name) or topics.get(f"/{name}")
@@ -320,23 +326,22 @@ def topic_of(path: Path, topics: Mapping[str, Topic], name: str) -> Topic:
     return found
 
 
-def sample_messages(path: Path, names: Sequence[str]) -> dict[str, Any]:
+def sample_messages(parts: Sequence[Recording], names: Sequence[str]) -> dict[str, Any]:
     """The first message of some topics that can be decoded, to see their fields."""
     found: dict[str, Any] = {}
-    with recordings(path) as parts:
-        topics = all_topics(parts)
-        decoders = {}
-        for name in names:
-            try:
-                decoders[name] = topics[name].decoder()
-            except BadInput:
-                continue
-        for part in parts:
-            for name in list(decoders):
-                for _, _, data in part.messages({name}):
-                    try:
-                        found[name] = decoders.pop(name)(data)
-                    except Exception:  # bytes that are no such message
-                        decoders.pop(name, None)
-                    break
+    topics = all_topics(parts)
+    decoders = {}
+    for name in names:
+        try:
+            decoders[name] = topics[name].decoder()
+        except BadInput:
+            continue
+    for part in parts:
+        for name in list(decoders):
+            for _, _, data in part.messages({name}):
+                try:
+                    found[name] = decoders.pop(name)(data)
+                except Exception:  # bytes that are no such message
+                    decoders.pop(name, None)
+                break
     return found

@@ -18,7 +18,7 @@ from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.rolling_evidence import run_of, stretch_errors
 from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import for_wheels
+from laconic.robot.logs.for_vehicle import for_vehicle
 from laconic.robot.logs.poses import at_times
 from laconic.robot.replay.measures import path_length
 from laconic.robot.replay.rolled_paths import roll
@@ -60,7 +60,6 @@ class Audit:
     lag_s: float | None     # of the true pose behind the wheels; None: not found
     gains: dict[str, float]  # true motion over that of the fitted wheels, in each direction that the runs tell
     spread: np.ndarray      # root mean square of the stretches' errors: ahead, left [m for 1 m], turn [rad for 1 m]
-    given: list[Log]        # the runs as they were recorded
 
     @property
     def fitted(self) -> Scene:
@@ -78,7 +77,7 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     if slips(scene.vehicle):
         raise BadInput(f"{scene.path}: has a [ground] with friction; give the scene without it, as an audit compares "
                        "with rolling and names slip as what is left")
-    runs = [for_wheels(log, scene.vehicle["wheel"], scene.vehicle.get("wheel_radius_m")) for log in logs]
+    runs = [for_vehicle(log, scene.vehicle) for log in logs]
     for run in runs:
         run.needs("pose", "an audit")
     lag_s = lag_of(scene, runs)
@@ -95,7 +94,7 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     gains, spread = leftovers(fitted, moved)
     advance()
     causes = _causes(study, alone, nominal, found, lag_s)
-    return Audit(scene, moved, nominal, found, causes, study, lag_s, gains, spread, runs)
+    return Audit(scene, moved, nominal, found, causes, study, lag_s, gains, spread)
 
 
 def _causes(study: Study, alone: dict[str, float], nominal: float, found: float, lag_s: float | None) -> list[Cause]:

@@ -16,8 +16,8 @@ from laconic.robot.identify.report import as_numbers as numbers_of_study
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.rolled_paths import roll
 from laconic.robot.replay.rolling import wheel_radii
+from laconic.scene.base import usual_joints
 
-ENDINGS = (".yaml", ".yml", ".h", ".toml")
 WORTH_A_LINE = 0.002    # of a radius
 PARALLEL_RAD = 0.02     # between axles that count as one direction
 
@@ -34,7 +34,7 @@ def export(found: Audit, path: Path) -> str:
 def _joints(found: Audit) -> list[str]:
     names = found.logs[0].column_names
     count = len(found.scene.vehicle["wheel"])
-    return list(names) if len(names) == count else [f"wheel_{number}_joint" for number in range(1, count + 1)]
+    return list(names) if len(names) == count else usual_joints(count)
 
 
 def _is_differential(wheels: list[dict[str, Any]]) -> bool:
@@ -117,7 +117,7 @@ def header_text(found: Audit, path: Path) -> str:
 
 
 SPREADS = ("ahead_m_per_m", "left_m_per_m", "turn_rad_per_m")
-COLOURS = {"true": "black", "nominal": "tab:red", "fitted": "tab:blue"}
+COLOURS = {"nominal": "tab:red", "fitted": "tab:blue"}
 
 
 def as_text(found: Audit, picture: str | None = None) -> str:
@@ -145,7 +145,7 @@ def words_of_rest(found: Audit) -> list[str]:
     words = [f"for each metre of way the robot is off by {1e3 * ahead:.1f} mm ahead, {1e3 * left:.1f} mm to the left "
              f"and {np.degrees(turn):.2f}° (root mean square over stretches)"]
     for name, gain in found.gains.items():
-        kind = "turns" if name == "turn" else f"moves {name}" if name != "turn" else name
+        kind = "turns" if name == "turn" else f"moves {name}"
         words.append(f"the robot {kind} {gain:.4f} of what the fitted wheels tell" + (
             ": rollers slip or drag there" if abs(gain - 1.0) > 0.02 else ""))
     words.append("no time lag was found between wheels and pose" if found.lag_s is None else

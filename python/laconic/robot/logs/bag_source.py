@@ -10,21 +10,22 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput, nearest_of, reason_of, shown
+from laconic.robot.bags.messages import Recording, Topic
 from laconic.robot.bags.samples import (
     TF,
     Frames,
     Samples,
     all_topics,
-    is_ulog,
     read_samples,
     recordings,
     sample_messages,
     topic_of,
+    topics_in,
 )
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.log import LEAST_SAMPLES, PER_WHEEL
-from laconic.robot.logs.quantity import NUMBERED, Column, Quantity
-from laconic.robot.logs.sources import Raw, Source, checked_time
+from laconic.robot.logs.quantity import Column, Quantity
+from laconic.robot.logs.sources import Raw, Source, checked_time, numbered
 from laconic.robot.logs.units import ISO, TIME
 
 HDF5_MAGIC = b"\x89HDF"
@@ -104,7 +105,7 @@ def mat_source(path: Path, columns: ColumnMap) -> Source:
     instants = np.unique(np.concatenate([main, *others.values()]))
 
     def raw(quantity: Quantity) -> Raw | None:
-        names = _numbered(quantity, vectors)
+        names = numbered(quantity, vectors)
         if quantity.is_optional and (not names or any(str(name) not in vectors for name in names)):
             return None
         own = others.get(quantity.name, main)
@@ -150,17 +151,6 @@ def _vector(path: Path, vectors: Mapping[str, np.ndarray], name: Column, quantit
     return found
 
 
-def _numbered(quantity: Quantity, vectors: Mapping[str, np.ndarray]) -> list[Column]:
-    """The columns; a name with # stands for those of wheel 1, 2 … as far as they are there."""
-    name = str(quantity.columns[0]) if quantity.columns else ""
-    if len(quantity.columns) != 1 or NUMBERED not in name:
-        return list(quantity.columns)
-    found: list[Column] = []
-    while (column := name.replace(NUMBERED, str(len(found) + 1))) in vectors:
-        found.append(column)
-    return found or ([] if quantity.is_optional else [name.replace(NUMBERED, "1")])
-
-
 POSES = {
     "Odometry": ("pose.pose.position.x", "pose.pose.position.y", "pose.pose.orientation"),
     "PoseWithCovarianceStamped": ("pose.pose.position.x", "pose.pose.position.y", "pose.pose.orientation"),
@@ -202,17 +192,22 @@ class Place:
 
 def bag_source(path: Path, columns: ColumnMap) -> Source:
     """A recording of topics by a map; BadInput names the topic or field that is not there."""
+    with recordings(path) as parts:
+        return _source(path, columns, parts)
+
+
+def _source(path: Path, columns: ColumnMap, parts: Sequence[Recording]) -> Source:
     wanted: dict[str, list[str]] = {}
     frames: list[Frames] = []
     places, is_geodetic = {}, False
-    types = _types(path, columns)
+    known = topics_in(path, parts)
     for quantity in columns.quantities.values():
-        if quantity.name == "time" or (quantity.is_optional and not _is_there(quantity, types)):
+        if quantity.name == "time" or (quantity.is_optional and not _is_there(quantity, known)):
             continue
         names = list(map(str, quantity.columns))
         if quantity.topic:
-            names = _of_topic(path, columns, quantity.topic, types)
-            is_geodetic = is_geodetic or own_name(types[_known(path, quantity.topic, types)]) == GEODETIC
+            names, kind = _of_topic(path, quantity.topic, known)
+            is_geodetic = is_geodetic or kind == GEODETIC
         if quantity.frames:
             frames.append((quantity.frames[0], quantity.frames[1]))
             places[quantity.name] = Place((), frames[-1], tuple(f"{TF} {part}" for part in ("x", "y", "heading")))
@@ -225,10 +220,10 @@ def bag_source(path: Path, columns: ColumnMap) -> Source:
                 fields.append(field)
             found.append((topic, fields.index(field)))
         places[quantity.name] = Place(tuple(found), None, tuple(names))
-    read = read_samples(path, wanted, frames)
+    read = read_samples(path, parts, wanted, frames)
     topics, clock = _on_one_clock({**read.topics, **{_key(pair): each for pair, each in read.frames.items()}},
                                   columns.stamps)
-    _check_fields(path, columns, places, topics)
+    _check_fields(path, parts, columns, places, topics)
     return _joined(path, columns, places, topics, is_geodetic, (*columns.notes, *read.remarks, *clock))
 
 
@@ -236,44 +231,26 @@ def _key(pair: Frames) -> str:
     return " ".join((TF, *pair))
 
 
-def _types(path: Path, columns: ColumnMap) -> dict[str, str]:
-    """The type of each topic; of a ULog the topics have none."""
-    if is_ulog(path):
-        from laconic.robot.bags.samples import topics_of_ulog
-
-        return dict.fromkeys(topics_of_ulog(path), "")
-    with recordings(path) as parts:
-        return {name: topic.type for name, topic in all_topics(parts).items()}
-
-
-def _is_there(quantity: Quantity, types: dict[str, str]) -> bool:
+def _is_there(quantity: Quantity, known: Mapping[str, Topic]) -> bool:
     topics = [quantity.topic] if quantity.topic else [TF] if quantity.frames else [
         split_column(str(column))[0] for column in quantity.columns]
-    return all(topic in types or f"/{topic}" in types for topic in topics)
+    return all(topic in known or f"/{topic}" in known for topic in topics)
 
 
-def _known(path: Path, name: str, types: dict[str, str]) -> str:
-    if name in types or f"/{name}" in types:
-        return name if name in types else f"/{name}"
-    with recordings(path) as parts:
-        return topic_of(path, all_topics(parts), name).name
-
-
-def _of_topic(path: Path, columns: ColumnMap, topic: str, types: dict[str, str]) -> list[str]:
-    """The columns of a pose by the type of its messages."""
-    kind = own_name(types[_known(path, topic, types)])
+def _of_topic(path: Path, topic: str, known: Mapping[str, Topic]) -> tuple[list[str], str]:
+    """(the columns of a pose by the type of its messages, that type's own name)."""
+    whole = topic_of(path, known, topic).type
+    kind = own_name(whole)
     if kind not in POSES:
-        raise BadInput(f"{path}: {topic} is of type {types[_known(path, topic, types)] or 'unknown'}, in which no pose "
-                       "is known; give its fields as columns under [pose] in the map, such as "
-                       f'"{topic}.pose.position.x"')
-    return [f"{topic}.{field}" for field in POSES[kind]]
+        raise BadInput(f"{path}: {topic} is of type {whole or 'unknown'}, in which no pose is known; give its fields "
+                       f'as columns under [pose] in the map, such as "{topic}.pose.position.x"')
+    return [f"{topic}.{field}" for field in POSES[kind]], kind
 
 
 def _on_one_clock(topics: dict[str, Samples], stamps: str) -> tuple[dict[str, Samples], list[str]]:
     """All topics on the clock of their headers; on the recorder's where the map asks for it or headers disagree."""
-    by_arrival = {name: each.by_arrival() for name, each in topics.items()}
     if stamps == "arrival":
-        return by_arrival, []
+        return _by_arrival(topics), []
     begin, end = (pick(edge(each.stamp_ns) for each in topics.values()) for pick, edge in (
         (max, np.min), (min, np.max)))
     if begin <= end:
@@ -281,6 +258,7 @@ def _on_one_clock(topics: dict[str, Samples], stamps: str) -> tuple[dict[str, Sa
         if unstamped and len(unstamped) < len(topics):
             return topics, [f"{', '.join(unstamped)}: messages have no stamps, and the instants of their arrival count"]
         return topics, []
+    by_arrival = _by_arrival(topics)
     begin, end = (pick(edge(each.stamp_ns) for each in by_arrival.values()) for pick, edge in (
         (max, np.min), (min, np.max)))
     if begin > end:
@@ -288,7 +266,12 @@ def _on_one_clock(topics: dict[str, Samples], stamps: str) -> tuple[dict[str, Sa
     return by_arrival, ["the stamps of the topics are on clocks that share no time, so the instants of arrival count"]
 
 
-def _check_fields(path: Path, columns: ColumnMap, places: dict[str, Place], topics: dict[str, Samples]) -> None:
+def _by_arrival(topics: Mapping[str, Samples]) -> dict[str, Samples]:
+    return {name: each.by_arrival() for name, each in topics.items()}
+
+
+def _check_fields(path: Path, parts: Sequence[Recording], columns: ColumnMap, places: dict[str, Place],
+                  topics: dict[str, Samples]) -> None:
     """BadInput for a field that no message has; joints may be in angles or in speeds."""
     blank: dict[str, str] = {}
     for name, place in places.items():
@@ -300,7 +283,9 @@ def _check_fields(path: Path, columns: ColumnMap, places: dict[str, Place], topi
             continue
         topic, field = split_column(label)
         joint = field.partition("[")[2].rstrip("]")
-        message = None if is_ulog(path) else sample_messages(path, [topic]).get(topic)
+        known = all_topics(parts)  # none of a ULog, whose topics have no names of joints
+        own = [topic_of(path, known, topic).name] if known else []
+        message = next(iter(sample_messages(parts, own).values()), None)
         names = [str(each) for each in getattr(message, "name", [])] if joint and not joint.isdigit() else []
         if names:
             raise BadInput(f"{path}: {topic} has no joint {joint}; correct the map "

@@ -9,7 +9,16 @@ from typing import Any
 
 from laconic.errors import BadInput, shown
 from laconic.robot.logs.log import PER_WHEEL
-from laconic.robot.logs.quantity import YAW_RATE, Quantity, channel_of, is_numbered, quantity_of, time_of, yaw_rate_of
+from laconic.robot.logs.quantity import (
+    YAW_RATE,
+    Quantity,
+    channel_of,
+    is_numbered,
+    quantity_of,
+    shorthand,
+    time_of,
+    yaw_rate_of,
+)
 from laconic.scene.map_toml import read_map_toml
 from laconic.scene.table import Table
 
@@ -85,8 +94,6 @@ def map_of(table: Table) -> ColumnMap:
     quantities = {"time": time_of(table, form)}
     count: int | None = None
     if form == "bag":
-        from laconic.robot.logs.quantity import shorthand
-
         quantities |= shorthand(table)
     for each in QUANTITIES:
         if table.has(each) and each not in quantities:

@@ -22,7 +22,7 @@ NEAR_M = 1e-6
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a name: of left_wheelJoint left, wheel, joint."""
+    """Words and numbers of a name: of encoderLeft_ticks[2] encoder, left, ticks, 2."""
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)]
 
 
@@ -53,6 +53,11 @@ def places_by_name(names: Sequence[str], wheels: Sequence[Mapping[str, Any]]) ->
             return None
         found.append(fitting[0])
     return found if len(set(found)) == len(found) else None
+
+
+def for_vehicle(log: Log, vehicle: Mapping[str, Any]) -> Log:
+    """The log for this vehicle; BadInput where it has another number of wheels."""
+    return for_wheels(log, vehicle["wheel"], vehicle.get("wheel_radius_m"))
 
 
 def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | None = None) -> Log:

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from laconic.robot.logs.for_vehicle import corner_of
+from laconic.robot.logs.for_vehicle import corner_of, words_of
 from laconic.robot.logs.units import LATITUDE, LONGITUDE
 from laconic.robot.logs.wraps import wrap_of
+from laconic.scene.scene_text import value_text
 
 FEWEST_WHEELS, MOST_WHEELS = 2, 8
 HALF_TURN_DEG = 50.0
@@ -47,11 +48,6 @@ class Guess:
     missing: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     wheels: tuple[str, ...] = ()      # names of the wheels' columns or joints
-
-
-def words_of(name: str) -> list[str]:
-    """Words and numbers of a column's name: of encoderLeft_ticks[2] encoder, left, ticks, 2."""
-    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)]
 
 
 def guess_table(columns: Mapping[str, np.ndarray], texts: Mapping[str, str]) -> Guess:
@@ -317,29 +313,13 @@ def _are_increments(values: np.ndarray) -> bool:
 
 def toml_text(guess: Guess, name: str) -> str:
     """The map as a file, with what is missing as comments."""
-    lines = [f"name = {quoted(name)}"]
-    lines += [f"{key} = {_value(value)}" for key, value in guess.entries.items() if not isinstance(value, dict)]
+    lines = [f"name = {value_text(name)}"]
+    lines += [f"{key} = {value_text(value)}" for key, value in guess.entries.items() if not isinstance(value, dict)]
     for key, table in guess.entries.items():
         if isinstance(table, dict):
-            lines += ["", f"[{key}]", *(f"{inner} = {_value(value)}" for inner, value in table.items())]
+            lines += ["", f"[{key}]", *(f"{inner} = {value_text(value)}" for inner, value in table.items())]
             lines += ["# ticks_per_turn =     # missing: ticks for one turn of the encoder" for each in guess.missing
                       if each.startswith(f"{key}.ticks_per_turn")]
     lines += ["", *(f"# missing: {each}" for each in guess.missing if ".ticks_per_turn" not in each),
               *(f"# {each}" for each in guess.notes)]
     return "\n".join(lines).rstrip() + "\n"
-
-
-def quoted(text: str) -> str:
-    """A text as TOML has it."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in escaped) + '"'
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return quoted(value)
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_value, value))}]"
-    return repr(value)

@@ -12,12 +12,22 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot.bags.messages import Topic, is_bag, parts_of_message
-from laconic.robot.bags.samples import TF, all_topics, is_ulog, recordings, sample_messages
-from laconic.robot.logs.bag_source import POSES, own_name
+from laconic.robot.bags.messages import Recording, Topic, is_bag, parts_of_message
+from laconic.robot.bags.samples import (
+    TF,
+    all_topics,
+    is_ulog,
+    recordings,
+    sample_messages,
+    topic_of,
+    topics_in,
+    topics_of_ulog,
+)
+from laconic.robot.logs.bag_source import POSES, own_name, read_mat
 from laconic.robot.logs.column_map import ColumnMap, map_of
-from laconic.robot.logs.for_vehicle import corner_of, places_by_name
-from laconic.robot.logs.guess import TRUE, UNTRUE, Guess, guess_table, toml_text, words_of
+from laconic.robot.logs.for_vehicle import corner_of, places_by_name, words_of
+from laconic.robot.logs.guess import TRUE, UNTRUE, Guess, guess_table, toml_text
+from laconic.robot.logs.recognise import OF_CAN
 from laconic.robot.logs.text_table import number_of, rows_of, text_of
 from laconic.scene.table import Table
 
@@ -28,36 +38,26 @@ VOLTAGES = "/wheel_voltages"     # of `laconic simulate --bag`
 OF_WHEELS = {"wheel", "wheels", "drive", "motor"}
 
 
-def topics_in(path: Path) -> dict[str, Topic]:
-    """All topics by name; of a ULog with the number of their samples."""
-    if is_ulog(path):
-        from laconic.robot.bags.samples import topics_of_ulog
-
-        return {name: Topic(name, "", len(each.data["timestamp"]), lambda: bytes)
-                for name, each in sorted(topics_of_ulog(path).items())}
-    with recordings(path) as parts:
-        return all_topics(parts)
-
-
-def guess_bag(path: Path) -> Guess:
-    """The usual topics, and what is missing."""
-    topics = topics_in(path)
+def guess_bag(path: Path) -> tuple[Guess, dict[str, Topic]]:
+    """(the usual topics, and what is missing; all topics)."""
     found = Guess({"format": "bag"})
-    if is_ulog(path):
-        return _of_ulog(found, topics)
-    _joints(found, path, topics)
+    with recordings(path) as parts:
+        topics = topics_in(path, parts)
+        if is_ulog(path):
+            return _of_ulog(found, topics), topics
+        _joints(found, parts, topics)
     _pose(found, topics)
     _imu(found, topics)
     if VOLTAGES in topics and found.wheels:
         found.entries["voltage"] = {"columns": [f"{VOLTAGES}.data[{index}]" for index in range(len(found.wheels))],
                                     "optional": True}
         found.meaning[VOLTAGES] = "voltage [V]"
-    return found
+    return found, topics
 
 
 def map_of_bag(path: Path) -> ColumnMap:
     """The map that is guessed where nobody gave one; BadInput says what the recording lacks."""
-    guess = guess_bag(path)
+    guess, _ = guess_bag(path)
     wheels = {"joints", "wheel_angle", "wheel_speed"} & set(guess.entries)
     if not wheels:
         what = guess.missing[0] if guess.missing else "no topic of a usual type"
@@ -68,11 +68,11 @@ def map_of_bag(path: Path) -> ColumnMap:
     return replace(found, name="bag", quantities=quantities, is_guess=True, notes=tuple(guess.notes))
 
 
-def _joints(found: Guess, path: Path, topics: Mapping[str, Topic]) -> None:
+def _joints(found: Guess, parts: Sequence[Recording], topics: Mapping[str, Topic]) -> None:
     """The JointState with the most joints that are wheels by their names."""
     names = [name for name, topic in topics.items() if own_name(topic.type) == "JointState" and topic.count != 0]
     ranked: list[tuple[int, int, str, tuple[str, ...], Any]] = []
-    for index, (topic, message) in enumerate(sample_messages(path, names).items()):
+    for index, (topic, message) in enumerate(sample_messages(parts, names).items()):
         joints = [str(each) for each in (message.get("name", []) if isinstance(message, dict) else message.name)]
         wheels = [each for each in joints if OF_WHEELS & set(words_of(each))] or [
             each for each in joints if corner_of(each) != ("", "")] or joints
@@ -80,7 +80,7 @@ def _joints(found: Guess, path: Path, topics: Mapping[str, Topic]) -> None:
         ranked.append((-score, index, topic, tuple(wheels), message))
     if not ranked or not min(ranked, key=lambda each: each[:2])[3]:
         found.missing.append("wheels: has no topic of type JointState with names of joints")
-        _other_wheels(found, path, topics)
+        _other_wheels(found, parts, topics)
         return
     _, _, topic, found.wheels, message = min(ranked, key=lambda each: each[:2])
     found.entries |= {"joints": topic, "wheels": list(found.wheels)}
@@ -92,11 +92,11 @@ def _joints(found: Guess, path: Path, topics: Mapping[str, Topic]) -> None:
                            '"tick" and ticks_per_turn')
 
 
-def _other_wheels(found: Guess, path: Path, topics: Mapping[str, Topic]) -> None:
+def _other_wheels(found: Guess, parts: Sequence[Recording], topics: Mapping[str, Topic]) -> None:
     """Topics that may hold wheels in a form of their own."""
     names = [name for name in topics if {"wheel", "wheels", "encoder", "encoders", "ticks", "motor", "motors"} & set(
         words_of(name))][:4]
-    for name, message in sample_messages(path, names).items():
+    for name, message in sample_messages(parts, names).items():
         fields = [field for field, value in parts_of_message(message) if isinstance(value, (int, float))
                   and not field.startswith("header")][:3]
         if fields:
@@ -165,7 +165,6 @@ MOST_ROWS = 50_000     # whose values are looked at
 MOST_HEADER_LINES = 30
 UNITS = {"s", "ms", "us", "ns", "m", "mm", "cm", "m/s", "rad", "deg", "rad/s", "deg/s", "rpm", "A", "mA", "V", "mV",
          "tick", "ticks", "pix", "pixel", "1", "-", "count", "counts"}
-OF_CAN = (".blf", ".asc", ".log", ".trc", ".blf.gz", ".asc.gz", ".log.gz", ".trc.gz")
 
 
 @dataclass(frozen=True)
@@ -238,17 +237,13 @@ def _assign(guess: Guess, wheels: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _of_bag(path: Path) -> Inspection:
-    from laconic.robot.logs.inspection import guess_bag, topics_in
-
-    guess = guess_bag(path)
+    guess, topics = guess_bag(path)
     rows = [(topic.name, topic.type or "–", "–" if topic.count is None else str(topic.count),
-             guess.meaning.get(topic.name, "")) for topic in topics_in(path).values()]
+             guess.meaning.get(topic.name, "")) for topic in topics.values()]
     return Inspection(path, "a recording of topics", ("topic", "type", "messages", "taken for"), rows, guess)
 
 
 def _of_mat(path: Path) -> Inspection:
-    from laconic.robot.logs.bag_source import read_mat
-
     vectors = read_mat(path)
     length = Counter(map(len, vectors.values())).most_common(1)[0][0]
     guess = guess_table({name: each for name, each in vectors.items() if len(each) == length}, {})
@@ -380,20 +375,17 @@ def _columns(rows: Sequence[Sequence[str]], titles: Sequence[str],
 
 def lines_of_fields(path: Path, topic: str) -> list[str]:
     """The fields of a topic as a map names them, with the values of its first message."""
-    from laconic.robot.bags.samples import all_topics, is_ulog, recordings, sample_messages, topic_of
-
     if not is_bag(path):
         raise BadInput(f"--fields {topic}: {path} has no topics; leave it out")
     if is_ulog(path):
-        from laconic.robot.bags.samples import topics_of_ulog
-
         data = topics_of_ulog(path).get(topic)
         fields = {} if data is None else data.data
         return [f"{topic}.{name} = {values[0]}" for name, values in fields.items()] or [f"{topic} has no fields"]
     with recordings(path) as parts:
-        name = topic_of(path, all_topics(parts), topic).name
-        all_topics(parts)[name].decoder()  # says why it cannot be decoded
-    found = sample_messages(path, [name])
+        found_topic = topic_of(path, all_topics(parts), topic)
+        name = found_topic.name
+        found_topic.decoder()  # says why it cannot be decoded
+        found = sample_messages(parts, [name])
     if name not in found:
         raise BadInput(f"{path}: {name} has no message that can be decoded; choose another topic")
     return [f"{name}.{field} = {value!r}" for field, value in parts_of_message(found[name])]

@@ -14,7 +14,6 @@ from laconic.robot.logs.quantity import Quantity
 from laconic.robot.logs.rows import Sampled, fresh
 from laconic.robot.logs.units import LATITUDE, OF_QUANTITY
 
-HALF_TURN = np.pi
 TILTED_RAD = np.radians(20.0)    # a robot on the ground does not lean so far
 WGS84_A_M, WGS84_E2 = 6378137.0, 6.69437999014e-3
 

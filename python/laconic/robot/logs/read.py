@@ -33,7 +33,7 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     chosen = choose(source.time_s, sampled, source.is_row, source.hold_s, source.lines,
                     tells_gaps=source.tells_gaps)
     time = source.time_s[chosen.rows]
-    _check_time(path, time, [source.place(int(row)) for row in chosen.rows])
+    _check_time(path, time, lambda row: source.place(int(chosen.rows[row])))
     found: dict[str, Any] = {MEMBERS[name]: _spread_by(columns.quantities[name], values)
                              for name, values in chosen.values.items() if name in MEMBERS}
     if columns.group:
@@ -261,14 +261,14 @@ def _figures(path: Path, columns: ColumnMap) -> Callable[[Any], float]:
     return figure
 
 
-def _check_time(path: Path, time: np.ndarray, places: Sequence[str]) -> None:
+def _check_time(path: Path, time: np.ndarray, place: Callable[[int], str]) -> None:
     grows = np.diff(time) > 0.0
     if len(time) < LEAST_SAMPLES:
         raise BadInput(f"{path}: needs at least {LEAST_SAMPLES} samples with increasing time, has {len(time)}; give a "
                        "whole recorded run")
     if not grows.all():
         row = int(np.argmin(grows)) + 1
-        raise BadInput(f"{path}: {places[row]}: time does not grow ({time[row - 1]:.9g} s, then {time[row]:.9g} s); "
+        raise BadInput(f"{path}: {place(row)}: time does not grow ({time[row - 1]:.9g} s, then {time[row]:.9g} s); "
                        f"needs at least {LEAST_SAMPLES} samples with increasing time, so remove it or repair it")
 
 

@@ -11,7 +11,6 @@ from laconic.errors import BadInput
 from laconic.robot.bags.messages import ENDINGS as OF_BAG
 from laconic.robot.bags.messages import OF_ROSBAG2, is_bag
 from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
-from laconic.robot.logs.inspection import map_of_bag
 from laconic.robot.logs.log import Log
 from laconic.robot.logs.read import read_log
 from laconic.robot.logs.text_table import text_of
@@ -35,6 +34,8 @@ def gather_logs(given: Sequence[Path], map_path: Path | None = None) -> tuple[li
     endings = (*ENDINGS, *OF_BAG) if map_path is None else OF_FORMAT[maps[0].format]
     for path in files_of(given, endings):
         if map_path is None and is_bag(path):
+            from laconic.robot.logs.inspection import map_of_bag  # which the project's own logs do not need
+
             logs.append(read_log(path, map_of_bag(path)))
             continue
         if (columns := map_for(path, maps, is_given=map_path is not None)) is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from fractions import Fraction
@@ -14,7 +14,7 @@ import numpy as np
 from laconic.errors import BadInput, shown
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.log import LEAST_SAMPLES
-from laconic.robot.logs.quantity import NUMBERED, Column, Quantity
+from laconic.robot.logs.quantity import NUMBERED, Column, Quantity, is_numbered
 from laconic.robot.logs.text_table import TextTable, read_text
 from laconic.robot.logs.units import ISO, TIME
 
@@ -42,8 +42,12 @@ def _wrapped(path: Path, quantity: Quantity, cells: Sequence[Sequence[str]], lin
     values = np.array([float(_instant(path, quantity, row, line) / unit)
                        for row, line in zip(cells, lines, strict=True)])
     assert quantity.wrap
-    steps = np.mod(np.diff(values), float(quantity.wrap))
-    return np.concatenate([[0.0], np.cumsum(steps)]) * float(unit) * quantity.scales[0]
+    return _since_first(values, float(quantity.wrap)) * float(unit) * quantity.scales[0]
+
+
+def _since_first(values: np.ndarray, wrap: float) -> np.ndarray:
+    """What a clock that begins again after `wrap` counted since its first value."""
+    return np.concatenate([[0.0], np.cumsum(np.mod(np.diff(values), wrap))])
 
 
 def _instant(path: Path, quantity: Quantity, texts: Sequence[str], line: int) -> Fraction:
@@ -128,7 +132,7 @@ def _text_source(path: Path, columns: ColumnMap) -> Source:
     table = read_text(path, columns)
 
     def raw(quantity: Quantity) -> Raw | None:
-        wanted = _numbered(quantity, table.names)
+        wanted = numbered(quantity, table.names)
         if quantity.first:
             wanted = tuple(range(quantity.first, len(table.rows[0]) + 1))
             if not wanted:
@@ -157,7 +161,7 @@ def _time(path: Path, quantity: Quantity, values: np.ndarray, lines: Sequence[in
     """In seconds; BadInput for a line whose time does not grow."""
     factor = quantity.scales[0] * TIME[quantity.units[0]]
     if isinstance(quantity.wrap, float):
-        values = values[:1] + np.concatenate([[0.0], np.cumsum(np.mod(np.diff(values), quantity.wrap))])
+        values = values[:1] + _since_first(values, quantity.wrap)
     return checked_time(path, quantity, values * factor, lines)
 
 
@@ -193,12 +197,11 @@ def _check_even(table: TextTable) -> None:
                            "line or repair it")
 
 
-def _numbered(quantity: Quantity, names: Sequence[str]) -> tuple[Column, ...]:
+def numbered(quantity: Quantity, names: Container[str]) -> tuple[Column, ...]:
     """The columns; a name with # stands for those of wheel 1, 2 … as far as they are there."""
-    column = quantity.columns[0] if len(quantity.columns) == 1 else None
-    if not isinstance(column, str) or NUMBERED not in column:
+    if not is_numbered(quantity.columns):
         return quantity.columns
-    found: list[Column] = []
+    column, found = str(quantity.columns[0]), list[Column]()
     while (name := column.replace(NUMBERED, str(len(found) + 1))) in names:
         found.append(name)
     if not found and not quantity.is_optional:
@@ -212,7 +215,7 @@ def _can_source(path: Path, columns: ColumnMap) -> Source:
     table = read_can(path, columns)
 
     def raw(quantity: Quantity) -> Raw | None:
-        names = [str(name) for name in _numbered(quantity, table.names_on(quantity.channel_of(0, table.channel)))]
+        names = [str(name) for name in numbered(quantity, table.names_on(quantity.channel_of(0, table.channel)))]
         found = [(name, column) for index, name in enumerate(names)
                  if (column := table.column(quantity, index, name)) is not None]
         if not found or len(found) < len(names):

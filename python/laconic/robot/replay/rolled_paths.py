@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import for_wheels
+from laconic.robot.logs.for_vehicle import for_vehicle
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.measures import RunErrors, grand_mean, session_means
 from laconic.robot.replay.predicted import predict
@@ -41,7 +41,7 @@ class RolledPaths:
 
 def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs: str = "wheel-speeds") -> RolledPaths:
     """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
-    fitting = [for_wheels(log, scene.vehicle["wheel"], scene.vehicle.get("wheel_radius_m")) for log in logs]
+    fitting = [for_vehicle(log, scene.vehicle) for log in logs]
     if inputs == "wheel-speeds" and all(log.pose is None for log in fitting):
         other = next((f", or take --inputs {name}" for name, values in (
             ("voltages", fitting[0].voltage_V), ("currents", fitting[0].current_A)) if values is not None), "")
