@@ -12,7 +12,7 @@ laconic_fmu(LaconicArticulated
     FIELDS "${PROJECT_SOURCE_DIR}/core_c/include/laconic/articulated.h"
     FOLDER articulated
     ICONS vehicle
-    SHARED vehicle/core_words.c vehicle/core_words.h
+    SHARED vehicle/core_words.c vehicle/core_words.h vehicle/serialize_core.h
     SOURCES model.c state.c idle.c exchange.c loads.c serialize.c
     HEADERS model.h variable_locations.h parts.h
     CORE ${core_files} ${articulated_files}

@@ -8,11 +8,12 @@ typedef struct place {
     double x, y; /* from the carriage's centre of mass, axes of the world */
 } place;
 
-/* Where each body is: the place of its frame, and that frame's axes. */
+/* Where each body is: the place of its frame, and that frame's axes as heading, cosine and sine. */
 typedef struct posture {
     const laconic_articulated_vehicle *vehicle;
     place origin[BODIES];
     laconic_heading facing[BODIES];
+    double axis[BODIES][2];
     int32_t group[BODIES]; /* the body with whose rigid carriage it stands */
 } posture;
 
@@ -22,15 +23,15 @@ typedef struct weights {
 } weights;
 
 static place point_of(const posture *p, int32_t body, double x_m, double y_m) {
-    double from_origin[2];
-    fmu_articulated_turn(from_origin, &p->facing[body], x_m, y_m);
-    const place found = {p->origin[body].x + from_origin[0], p->origin[body].y + from_origin[1]};
+    const double c = p->axis[body][0], s = p->axis[body][1];
+    const place found = {p->origin[body].x + (c * x_m - s * y_m), p->origin[body].y + (s * x_m + c * y_m)};
     return found;
 }
 
 static void find_posture(posture *p, const fmu_model *self) {
     const laconic_articulated_vehicle *v = p->vehicle = &self->in_use;
     p->facing[0] = self->state.heading;
+    fmu_articulated_turn(p->axis[0], &p->facing[0], 1.0, 0.0);
     p->origin[0] = point_of(p, 0, -self->prepared.com_x_m, -self->prepared.com_y_m);
     for (int32_t b = 1; b <= v->body_count; b++) {
         const laconic_body *body = &v->body[b - 1];
@@ -38,6 +39,7 @@ static void find_posture(posture *p, const fmu_model *self) {
         p->facing[b] = p->facing[body->parent];
         p->facing[b].fraction =
             (laconic_binary_angle)(p->facing[body->parent].fraction + self->state.hinge[b - 1].fraction);
+        fmu_articulated_turn(p->axis[b], &p->facing[b], 1.0, 0.0);
         p->group[b] = self->hinge_is_ball[b - 1] ? b : p->group[body->parent];
     }
 }
@@ -70,9 +72,9 @@ static void find_carriage(laconic_vehicle *rigid, const posture *p, int32_t grou
     rigid->com_x_m = carried->x_Nm / carried->sum_N;
     rigid->com_y_m = carried->y_Nm / carried->sum_N;
     for (int32_t i = 0; i < v->base.wheel_count; i++) {
+        if (p->group[v->wheel_body[i]] != group) continue;
         const place at = point_of(p, v->wheel_body[i], v->base.wheel[i].x_m, v->base.wheel[i].y_m);
         laconic_wheel *wheel = &rigid->wheel[rigid->wheel_count];
-        if (p->group[v->wheel_body[i]] != group) continue;
         wheel->kind = LACONIC_WHEEL_ROLLER;
         wheel->roller_rad = 1.5; /* any but 0: loads ask for places alone */
         wheel->x_m = at.x;

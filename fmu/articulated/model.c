@@ -157,11 +157,11 @@ static void show_nothing(fmu_instance *instance, const laconic_refusal *why, uin
     if (groups & FMU_GROUP_STATE) fill(&self->motion, sizeof self->motion, nan);
 }
 
-static void refresh_motion(fmu_model *self) {
+/* What follows from `motion`. */
+static void refresh_origin(fmu_model *self) {
     const laconic_articulated_model *m = &self->prepared;
-    laconic_articulated_motion *motion = &self->motion;
+    const laconic_articulated_motion *motion = &self->motion;
     double from_origin[2];
-    laconic_articulated_motion_of(motion, m, &self->state);
     fmu_articulated_turn(from_origin, &self->state.heading, m->com_x_m, m->com_y_m);
     self->origin_m[0] = motion->x_m - from_origin[0];
     self->origin_m[1] = motion->y_m - from_origin[1];
@@ -180,6 +180,7 @@ static laconic_status refresh_ground(fmu_model *self, laconic_refusal *why) {
     return status;
 }
 
+/* Needs `motion`. */
 static laconic_status refresh_rates(fmu_model *self, laconic_refusal *why) {
     const laconic_articulated_model *m = &self->prepared;
     const laconic_articulated_motion *motion = &self->motion;
@@ -187,7 +188,6 @@ static laconic_status refresh_rates(fmu_model *self, laconic_refusal *why) {
     double velocity[2];
     const laconic_status status = laconic_articulated_rates_of(&rates, m, &self->state, &self->input, why);
     if (status != LACONIC_OK) return status;
-    refresh_motion(self);
     fmu_articulated_turn(velocity, &self->state.heading, motion->velocity_m_per_s[0], motion->velocity_m_per_s[1]);
     self->rate.x_m = velocity[0];
     self->rate.y_m = velocity[1];
@@ -213,8 +213,10 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
         self->commanded = self->input;
         groups |= FMU_GROUP_STATE;
     }
+    if (groups & (FMU_GROUP_PLACE | FMU_GROUP_MOTION | FMU_GROUP_RATES))
+        laconic_articulated_motion_of(&self->motion, &self->prepared, &self->state);
     if (groups & FMU_GROUP_PLACE) fmu_articulated_show_state(self);
-    if (groups & FMU_GROUP_MOTION) refresh_motion(self);
+    if (groups & FMU_GROUP_MOTION) refresh_origin(self);
     if (status == LACONIC_OK && groups & FMU_GROUP_GROUND) status = refresh_ground(self, &why);
     if (status == LACONIC_OK && groups & FMU_GROUP_RATES) status = refresh_rates(self, &why);
     if (status != LACONIC_OK) show_nothing(instance, &why, groups);

@@ -14,7 +14,7 @@ laconic_status fmu_articulated_start(fmu_model *self, bool *allowed, laconic_ref
 /* Logs a start that is not allowed, with the nearest one. */
 fmu_status fmu_articulated_refuse_start(const fmu_instance *instance);
 
-/* The continuous states of the core's state, and the core's state of them. The second refuses as
+/* The continuous states of the core's state and its `motion`, and the core's state of them. The second refuses as
  * laconic_articulated_state_set. */
 void fmu_articulated_show_state(fmu_model *self);
 laconic_status fmu_articulated_take_state(fmu_model *self, const laconic_articulated_input *input,

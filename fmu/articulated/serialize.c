@@ -1,18 +1,7 @@
 /* All members of the fmu_model of a vehicle with hinges to and from bytes. Prepared constants are not stored but
  * prepared again, which gives the same bits. */
 #include "parts.h"
-
-#define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    fmu_stream_reals(s, (double *)&(of).member, sizeof(of).member / sizeof(double));
-#define SERIALIZE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).member);
-#define SERIALIZE_OWN(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).own_##member);
-#define SERIALIZE_REAL(stream, number) fmu_stream_reals(stream, number, 1)
-#define SERIALIZE_INTEGER(stream, number) serialize_integer(stream, (int32_t *)(number))
-#define SERIALIZE_ABSENCE(stream, flag) fmu_stream_bool(stream, flag)
-#define SERIALIZE_FLAG(stream, flag) fmu_stream_bool(stream, flag)
-#define SERIALIZE_WHEEL_KIND(stream, kind) serialize_integer(stream, (int32_t *)(kind)) /* model.c checks its size */
-
-static void serialize_integer(fmu_stream *s, int32_t *number) { fmu_stream_i32(s, number, INT32_MIN, INT32_MAX); }
+#include "serialize_core.h"
 
 static void serialize_vehicle(fmu_stream *s, laconic_articulated_vehicle *v) {
     laconic_vehicle *base = &v->base;
@@ -44,23 +33,6 @@ static void serialize_input(fmu_stream *s, laconic_articulated_input *u) {
     LACONIC_INPUT_ARRAY_FIELDS(SERIALIZE_ARRAY, u->base)
     LACONIC_INPUT_FIELDS(SERIALIZE, u->base)
     LACONIC_HINGE_INPUT_FIELDS(SERIALIZE_ARRAY, *u)
-}
-
-static void serialize_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
-    for (size_t k = 0; k < count; k++) {
-        fmu_stream_reals(s, &sums[k].value, 1);
-        fmu_stream_reals(s, &sums[k].rest, 1);
-    }
-}
-
-/* What a heading has not taken up is at most 1; not so NaN. */
-static void serialize_heading(fmu_stream *s, laconic_heading *heading) {
-    uint64_t fraction = heading->fraction;
-    fmu_stream_i64(s, &heading->turns);
-    fmu_stream_u64(s, &fraction);
-    heading->fraction = fraction;
-    fmu_stream_reals(s, &heading->rest, 1);
-    if (s->from != NULL && !(heading->rest <= 1.0 && heading->rest >= -1.0)) s->failed = true;
 }
 
 static void serialize_state(fmu_stream *s, laconic_articulated_state *state) {

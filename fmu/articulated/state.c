@@ -119,7 +119,6 @@ static laconic_sum *own_velocity(fmu_model *self, int32_t b) {
 void fmu_articulated_show_state(fmu_model *self) {
     const laconic_articulated_motion *m = &self->motion;
     fmu_moving *at = &self->at;
-    laconic_articulated_motion_of(&self->motion, &self->prepared, &self->state);
     at->x_m = m->x_m;
     at->y_m = m->y_m;
     at->heading_rad = m->heading_rad;

@@ -9,7 +9,6 @@
 #define IN_VEHICLE(member) FMU_PLAIN(vehicle.base.member)
 #define IN_PAYLOAD(member) FMU_PLAIN(vehicle.base.payload.member)
 #define IN_GROUND(member) FMU_PLAIN(vehicle.base.ground.member)
-#define IN_DRIVE(member) FMU_PLAIN(vehicle.base.drive.member)
 #define IN_WHEEL(member) FMU_AT(vehicle.base.wheel[0].member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
 #define IN_OWN(member) IN_WHEEL(own_##member)
 #define IN_SUPPORT(member) FMU_AT(vehicle.base.support[0].member), sizeof(laconic_support), 0, FMU_NO_TANGENT

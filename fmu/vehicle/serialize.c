@@ -3,23 +3,7 @@
 #include "friction_part.h"
 #include "idle_motors.h"
 #include "sensors_part.h"
-
-/* One field of a struct: an array of numbers, or one by its kind. */
-#define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    fmu_stream_reals(s, (of).member, sizeof(of).member / sizeof(double));
-#define SERIALIZE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).member);
-#define SERIALIZE_OWN(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).own_##member);
-#define SERIALIZE_REAL(stream, number) fmu_stream_reals(stream, number, 1)
-#define SERIALIZE_INTEGER(stream, number) fmu_stream_i32(stream, number, INT32_MIN, INT32_MAX)
-#define SERIALIZE_ABSENCE(stream, flag) fmu_stream_bool(stream, flag)
-#define SERIALIZE_FLAG(stream, flag) fmu_stream_bool(stream, flag)
-#define SERIALIZE_WHEEL_KIND(stream, kind) serialize_kind(stream, kind)
-
-static void serialize_kind(fmu_stream *s, laconic_wheel_kind *kind) {
-    int32_t number = (int32_t)*kind;
-    fmu_stream_i32(s, &number, INT32_MIN, INT32_MAX);
-    *kind = (laconic_wheel_kind)number;
-}
+#include "serialize_core.h"
 
 static void serialize_vehicle(fmu_stream *s, laconic_vehicle *v) {
     LACONIC_VEHICLE_FIELDS(SERIALIZE, *v)
@@ -56,26 +40,11 @@ static void serialize_input(fmu_stream *s, laconic_input *u) {
     LACONIC_INPUT_FIELDS(SERIALIZE, *u)
 }
 
-static void serialize_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
-    for (size_t k = 0; k < count; k++) {
-        fmu_stream_reals(s, &sums[k].value, 1);
-        fmu_stream_reals(s, &sums[k].rest, 1);
-    }
-}
-
-/* What a heading has not taken up; not so NaN. */
-static bool is_rest(double rest) { return rest <= 1.0 && rest >= -1.0; }
-
 static void serialize_state(fmu_stream *s, laconic_state *state) {
-    uint64_t fraction = state->heading.fraction;
     serialize_sums(s, state->zeta, 3);
     serialize_sums(s, &state->x_m, 1);
     serialize_sums(s, &state->y_m, 1);
-    fmu_stream_i64(s, &state->heading.turns);
-    fmu_stream_u64(s, &fraction);
-    state->heading.fraction = fraction;
-    fmu_stream_reals(s, &state->heading.rest, 1);
-    if (s->from != NULL && !is_rest(state->heading.rest)) s->failed = true;
+    serialize_heading(s, &state->heading);
     serialize_sums(s, state->travel, 3);
     fmu_stream_reals(s, state->wheel_angle_set_rad, LACONIC_MAX_WHEELS);
 }

@@ -35,6 +35,9 @@
 
 #include "laconic/laconic.h"
 
+/* Of the methods, in the order of laconic_articulated_method. */
+#define LACONIC_ARTICULATED_METHOD_NAMES "auto", "rk4", "circle", "moebius-4"
+
 #if LACONIC_MAX_BODIES > 0
 
 #ifdef __cplusplus
@@ -291,7 +294,7 @@ typedef enum laconic_articulated_method {
 
 #define LACONIC_ARTICULATED_METHOD_COUNT 4
 
-/* "auto", "rk4", "circle", "moebius-4"; "" for an unknown number. */
+/* One of LACONIC_ARTICULATED_METHOD_NAMES; "" for an unknown number. */
 const char *laconic_articulated_method_name(int32_t method);
 
 /* The method of that name; −1: there is none. */

@@ -144,7 +144,7 @@ typedef struct laconic_tree_body {
 /* Prepared constants of one wheel. */
 typedef struct laconic_tree_rim {
     int32_t body;
-    bool locked, fixed;
+    bool locked;
     laconic_real x_m, y_m;             /* from the body's hinge, its axes                                    */
     laconic_real pull[2];              /* u, axes of the body                                                */
     laconic_real rim[2];               /* R sin γ, k R cos γ                                                 */
@@ -164,7 +164,7 @@ typedef struct laconic_tree_motor {
 
 /* Prepared constants; read them, do not write them. */
 typedef struct laconic_tree_model {
-    int32_t body_count, wheel_count, point_count, group_count;
+    int32_t body_count, wheel_count, point_count;
     laconic_tree_body body[LACONIC_MAX_BODIES + 1];
     laconic_tree_rim wheel[LACONIC_MAX_WHEELS];
     laconic_tree_motor motor[LACONIC_TREE_AXES]; /* of wheel i, then of hinge b at wheel_count + b − 1       */

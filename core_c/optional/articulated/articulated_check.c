@@ -3,20 +3,14 @@
 
 #if LACONIC_MAX_BODIES > 0
 
-#define OF(IDENTIFIER) ((laconic_field)LACONIC_FIELD_OF_##IDENTIFIER)
-
-typedef struct body_number {
-    uint16_t offset;
-    uint8_t field, rule;
-} body_number;
-
 #define INTEGER_BODY_NUMBER(...)
 #define REAL_BODY_NUMBER(number, member, RULE) {offsetof(laconic_body, member), number, LACONIC_RULE_##RULE},
 #define BODY_NUMBER(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) KIND##_BODY_NUMBER(number, member, RULE)
 
-static const body_number of_hung_body[] = {LACONIC_BODY_FIELDS(BODY_NUMBER, )};
+static const articulated_number of_hung_body[] = {LACONIC_BODY_FIELDS(BODY_NUMBER, )};
 
-static laconic_status check_body_number(real value, const body_number *number, int32_t item, laconic_refusal *why) {
+static laconic_status check_body_number(real value, const articulated_number *number, int32_t item,
+                                        laconic_refusal *why) {
     const laconic_field field = (laconic_field)number->field;
     if (!fits_squared(value))
         return refuse(why, is_finite(value) ? LACONIC_OVERFLOW : LACONIC_NOT_FINITE, field, item, value, R(0));
@@ -25,6 +19,14 @@ static laconic_status check_body_number(real value, const body_number *number, i
     if (number->rule == LACONIC_RULE_ANGLE && magnitude(value) > LARGEST_ANGLE)
         return refuse(why, LACONIC_OVERFLOW, field, item, value, LARGEST_ANGLE);
     return LACONIC_OK;
+}
+
+laconic_status laconic_articulated_check_numbers(const void *of, const articulated_number *numbers, size_t count,
+                                                 int32_t item, laconic_refusal *why) {
+    laconic_status status = LACONIC_OK;
+    for (size_t k = 0; status == LACONIC_OK && k < count; k++)
+        status = check_body_number(*number_at(of, numbers[k].offset), &numbers[k], item, why);
+    return status;
 }
 
 static laconic_status check_hinge(const laconic_body *hung, int32_t b, laconic_refusal *why) {
@@ -40,10 +42,9 @@ static laconic_status check_hinge(const laconic_body *hung, int32_t b, laconic_r
 }
 
 static laconic_status check_hung_body(const laconic_body *hung, int32_t b, laconic_refusal *why) {
-    laconic_status status = check_hinge(hung, b, why);
-    for (size_t k = 0; status == LACONIC_OK && k < sizeof of_hung_body / sizeof of_hung_body[0]; k++)
-        status = check_body_number(*number_at(hung, of_hung_body[k].offset), &of_hung_body[k], b, why);
-    return status;
+    const size_t count = sizeof of_hung_body / sizeof of_hung_body[0];
+    const laconic_status status = check_hinge(hung, b, why);
+    return status == LACONIC_OK ? laconic_articulated_check_numbers(hung, of_hung_body, count, b, why) : status;
 }
 
 static laconic_status check_ground(const laconic_vehicle *base, laconic_refusal *why) {

@@ -5,6 +5,7 @@
  * afterwards stay, and of all allowed motions this one is nearest to X⁻ in kinetic energy. A start is the same from η =
  * 0, with the given twists as X⁻. */
 #include "articulated_step.h"
+#include "articulated_vehicle.h"
 #include "step_internals.h"
 
 #if LACONIC_MAX_BODIES > 0
@@ -87,30 +88,42 @@ void laconic_articulated_keep_drive(laconic_articulated_state *state, const laco
 
 /* ----------------------------------------------------------------------------------- starts -- */
 
-#define START_FIELD(IDENTIFIER) ((laconic_field)LACONIC_FIELD_OF_##IDENTIFIER)
-
-static laconic_status check_number_of_start(real value, laconic_field field, int32_t item, laconic_refusal *why) {
+laconic_status laconic_articulated_check_start_number(real value, laconic_field field, int32_t item, real largest,
+                                                      laconic_refusal *why) {
     if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, item, value, R(0));
-    if (!(magnitude(value) < LARGEST_YAW_CHANGE_RAD) || !fits_squared(value))
+    if (!(magnitude(value) < LARGEST_YAW_CHANGE_RAD) || magnitude(value) > largest)
         return refuse(why, LACONIC_OVERFLOW, field, item, value, R(0));
     return LACONIC_OK;
 }
 
+laconic_status laconic_articulated_check_start(const laconic_articulated_start *start, real largest,
+                                               laconic_refusal *why) {
+    const real numbers[] = {
+        start->velocity_m_per_s[0], start->velocity_m_per_s[1], start->yaw_rate_rad_per_s, start->x_m, start->y_m,
+        start->heading_rad};
+    const laconic_field fields[] = {OF(START_VELOCITY),    OF(START_VELOCITY),    OF(START_YAW_RATE),
+                                    LACONIC_FIELD_START_X, LACONIC_FIELD_START_Y, LACONIC_FIELD_START_HEADING};
+    laconic_status status = LACONIC_OK;
+    for (int32_t k = 0; status == LACONIC_OK && k < 6; k++)
+        status = laconic_articulated_check_start_number(numbers[k], fields[k], k < 2 ? k + 1 : 0, largest, why);
+    return status;
+}
+
+laconic_status laconic_articulated_check_hinge_start(const laconic_articulated_start *start, int32_t b, real largest,
+                                                     laconic_refusal *why) {
+    const laconic_status status =
+        laconic_articulated_check_start_number(start->hinge_angle_rad[b - 1], OF(START_HINGE_ANGLE), b, largest, why);
+    if (status != LACONIC_OK) return status;
+    return laconic_articulated_check_start_number(start->hinge_rate_rad_per_s[b - 1], OF(START_HINGE_RATE), b, largest,
+                                                  why);
+}
+
+/* What a heading can count is the least bound. */
 static laconic_status check_articulated_start(const laconic_articulated_model *m,
                                               const laconic_articulated_start *start, laconic_refusal *why) {
-    laconic_status status = LACONIC_OK;
-    for (int32_t k = 0; status == LACONIC_OK && k < 2; k++)
-        status = check_number_of_start(start->velocity_m_per_s[k], START_FIELD(START_VELOCITY), k + 1, why);
-    if (status == LACONIC_OK)
-        status = check_number_of_start(start->yaw_rate_rad_per_s, START_FIELD(START_YAW_RATE), 0, why);
-    if (status == LACONIC_OK) status = check_number_of_start(start->x_m, LACONIC_FIELD_START_X, 0, why);
-    if (status == LACONIC_OK) status = check_number_of_start(start->y_m, LACONIC_FIELD_START_Y, 0, why);
-    if (status == LACONIC_OK) status = check_number_of_start(start->heading_rad, LACONIC_FIELD_START_HEADING, 0, why);
-    for (int32_t b = 0; status == LACONIC_OK && b < m->body_count; b++) {
-        status = check_number_of_start(start->hinge_angle_rad[b], START_FIELD(START_HINGE_ANGLE), b + 1, why);
-        if (status == LACONIC_OK)
-            status = check_number_of_start(start->hinge_rate_rad_per_s[b], START_FIELD(START_HINGE_RATE), b + 1, why);
-    }
+    laconic_status status = laconic_articulated_check_start(start, LACONIC_REAL_MAX, why);
+    for (int32_t b = 1; status == LACONIC_OK && b <= m->body_count; b++)
+        status = laconic_articulated_check_hinge_start(start, b, LACONIC_REAL_MAX, why);
     return status;
 }
 

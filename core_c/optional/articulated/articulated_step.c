@@ -5,7 +5,7 @@
 
 #define SAME_DIRECTION (R(100) * LACONIC_RANK_TOLERANCE) /* sine: of a twist that goes on as it was */
 
-static const char *const method_names[LACONIC_ARTICULATED_METHOD_COUNT] = {"auto", "rk4", "circle", "moebius-4"};
+static const char *const method_names[LACONIC_ARTICULATED_METHOD_COUNT] = {LACONIC_ARTICULATED_METHOD_NAMES};
 
 const char *laconic_articulated_method_name(int32_t method) {
     return method >= 0 && method < LACONIC_ARTICULATED_METHOD_COUNT ? method_names[method] : "";

@@ -26,12 +26,12 @@ static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_s
 static void tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real speed) {
     const laconic_tree_motor *a = &p->m->motor[axis];
     if (!a->acts) return;
-    const tree_motor_state motor = laconic_tree_motor_at(p->m, axis, p->command_V[axis], speed, p->terminal_V);
+    const motor_state motor = laconic_tree_motor_at(p->m, axis, p->command_V[axis], speed, p->terminal_V);
     const bool known = a->ampere_per_Nm != R(0); /* the electrical side */
     const real fed = p->h * motor.voltage_V * (known ? motor.current_A : a->gain_Nm_per_V * speed);
     s->current_A[axis] = motor.current_A;
     s->limit[axis] = (int32_t)motor.limit;
-    s->motor_torque_Nm[axis] = motor.torque_Nm - a->viscous_Nms * speed;
+    s->motor_torque_Nm[axis] = motor.torque - a->viscous_Nms * speed;
     e->supplied += fed;
     e->motor += fed - p->h * s->motor_torque_Nm[axis] * speed;
 }

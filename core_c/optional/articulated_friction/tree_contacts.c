@@ -9,31 +9,23 @@
 
 #ifdef LACONIC_SINGLE
 #define TREE_STIFF_PENALTY PENALTY
-#define TREE_BORDER R(1)
-#define TREE_HIDDEN R(1e-8)
 #else
 #define TREE_STIFF_PENALTY R(1e8) /* at first: a pass less than with PENALTY, where contacts keep to stick or slip */
-#define TREE_BORDER R(0.998)
-#define TREE_HIDDEN R(1e-16)
 #endif
-
-#define TREE_NO_SLIP R(1e-30)
-
-static real tree_inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
 INLINE void tree_prepare_contact(tree_contact *c, bool star) {
     const real *e = c->wheel->rolling;
     c->along = tree_row_product(&c->row[0], &c->row[0], c->on, star);
     c->cross_row = tree_row_product(&c->row[0], &c->row[1], c->on, star);
     c->across = tree_row_product(&c->row[1], &c->row[1], c->on, star);
-    c->row_mass[0] = tree_inverse_or_zero(c->along);
-    c->row_mass[1] = tree_inverse_or_zero(c->across);
+    c->row_mass[0] = inverse_or_zero(c->along);
+    c->row_mass[1] = inverse_or_zero(c->across);
     c->mobility = c->along + c->across + c->wheel->rim_size * c->wheel->rim_size / c->wheel->inertia_kgm2 + c->creep;
     c->inverse_mobility = R(1) / c->mobility;
     c->lateral_mass = c->row_mass[1];
     if (e[1] == R(0)) return;
     c->lateral_mass =
-        tree_inverse_or_zero(e[1] * e[1] * c->along - R(2) * e[0] * e[1] * c->cross_row + e[0] * e[0] * c->across);
+        inverse_or_zero(e[1] * e[1] * c->along - R(2) * e[0] * e[1] * c->cross_row + e[0] * e[0] * c->across);
 }
 
 void laconic_tree_stiffen(tree_element *e, real of_mass) {
@@ -73,10 +65,11 @@ void laconic_tree_prepare_problem(tree_problem *p) {
 RARE real tree_beyond_grip(const tree_contact *c) {
     const real *p = c->impulse, grip = c->load.grip;
     const real left = (grip * grip - (p[0] * p[0] + p[1] * p[1])) / grip;
-    return left * left * tree_inverse_or_zero(c->lateral_mass);
+    return left * left * inverse_or_zero(c->lateral_mass);
 }
 
-INLINE void tree_see_axle(tree_sight *restrict s, const tree_contact *c) {
+/* Returns the square of the axle's residual. */
+INLINE real tree_see_axle(tree_sight *restrict s, const tree_contact *c) {
     const friction_load *l = &c->load;
     const real *rim = c->wheel->rim, inertia = c->wheel->inertia_kgm2, speed = c->speed;
     const real axle = rim[0] * c->impulse[0] + rim[1] * c->impulse[1] + inertia * (l->free_speed - speed) -
@@ -84,7 +77,7 @@ INLINE void tree_see_axle(tree_sight *restrict s, const tree_contact *c) {
     const real pushed = axle + inertia * speed;
     s->locked = magnitude(pushed) < l->axle;
     s->axle = cut(pushed, l->axle);
-    s->rest = (axle - s->axle) * (axle - s->axle) / inertia;
+    return (axle - s->axle) * (axle - s->axle) / inertia;
 }
 
 /* Returns the square of the contact's residual. */
@@ -100,13 +93,13 @@ INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_v
     }
     s->length = s->firm = R(0);
     size = s->t[0] * s->t[0] + s->t[1] * s->t[1];
-    if (size > TREE_BORDER * grip * grip) {
+    if (size > BORDER * grip * grip) {
         const real length = quick_root(size), outwards = s->t[0] * off[0] + s->t[1] * off[1];
         if (length > grip) inside = grip / length;
         if (length > grip || outwards > R(0)) s->length = length;
     }
     for (int m = 0; m < 2 && inside < R(1); m++) off[m] = inside * s->t[m] - p[m];
-    tree_see_axle(s, c);
+    const real rest = tree_see_axle(s, c);
     if (inside >= R(1)) {
         const real lateral = e[0] * off[1] - e[1] * off[0];
         const real held = off[0] * off[0] * c->row_mass[0] + off[1] * off[1] * c->row_mass[1];
@@ -116,8 +109,7 @@ INLINE real tree_see(tree_sight *restrict s, const tree_contact *c, const tree_v
             if (most < s->firm) s->firm = most;
         }
     }
-    s->rest += (off[0] * off[0] + off[1] * off[1] + TREE_HIDDEN * TREE_HIDDEN * size) * c->mobility;
-    return s->rest + s->firm;
+    return rest + (off[0] * off[0] + off[1] * off[1] + HIDDEN * HIDDEN * size) * c->mobility + s->firm;
 }
 
 /* The same of an element with x; its law for the pass follows at once. */
@@ -132,7 +124,7 @@ INLINE real tree_see_element(tree_element_law *restrict law, const tree_element 
         law->q = t >= e->high ? e->high : e->low;
         change = law->q - e->q;
     }
-    return (change * change + TREE_HIDDEN * TREE_HIDDEN * e->q * e->q) * e->all;
+    return (change * change + HIDDEN * HIDDEN * e->q * e->q) * e->all;
 }
 
 INLINE real tree_see_everything(tree_search *at, bool star) {
@@ -160,13 +152,13 @@ INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_c
     const real beyond = (s->length - grip) * c->mobility + grip * c->creep, inertia = c->wheel->inertia_kgm2;
     const real row = n[1] * n[1] * c->along - R(2) * n[0] * n[1] * c->cross_row + n[0] * n[0] * c->across;
     const real turns = row + rim * rim / inertia;
-    const real most = turns > TREE_NO_SLIP * c->mobility ? penalty / turns : R(0);
+    const real most = turns > NO_SLIP * c->mobility ? penalty / turns : R(0);
     const bool far_beyond = most * beyond > grip;
     real h = far_beyond ? grip / beyond : most, turn = R(0);
     real across = (far_beyond ? R(0) : n[0] * c->impulse[1] - n[1] * c->impulse[0]) + h * moved;
     const turning wheel =
-        tree_turning(c, h * rim * rim, c->load.axle,
-                     inertia * c->load.free_speed + grip * (n[0] * rims[0] + n[1] * rims[1]) + rim * across);
+        turning_of(inertia, &c->load, h * rim * rim, c->load.axle,
+                   inertia * c->load.free_speed + grip * (n[0] * rims[0] + n[1] * rims[1]) + rim * across);
     across -= h * rim * wheel.speed;
     if (!wheel.held) {
         const real all = wheel.slope + h * rim * rim;
@@ -221,8 +213,8 @@ static void tree_creeps(tree_law *restrict law, const tree_sight *s, const tree_
         pulled[m] = stiff[m] * rim[m];
     }
     const real added = pulled[0] * rim[0] + pulled[1] * rim[1];
-    const turning wheel =
-        tree_turning(c, added, c->load.axle, inertia * c->load.free_speed + rim[0] * held[0] + rim[1] * held[1]);
+    const turning wheel = turning_of(inertia, &c->load, added, c->load.axle,
+                                     inertia * c->load.free_speed + rim[0] * held[0] + rim[1] * held[1]);
     const real all = wheel.held ? R(1) : wheel.slope + added, own = wheel.held ? R(1) : wheel.slope;
     const real yields = wheel.held ? R(0) : R(1);
     law->speed = wheel.speed;

@@ -3,35 +3,18 @@
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
-/* As laconic_motor_at() of drive.c, in SI. */
-tree_motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V) {
-    const laconic_tree_motor *a = &m->motor[axis];
-    tree_motor_state s = {R(0), R(0), R(0), LACONIC_LIMIT_NONE};
-    if (a->circuit == LACONIC_MOTOR_OPEN) return s;
-    if (a->circuit == LACONIC_MOTOR_DRIVEN) {
-        s.voltage_V = terminal_V >= R(0) ? cut(command_V, terminal_V) : command_V;
-        if (s.voltage_V < command_V || s.voltage_V > command_V) s.limit = LACONIC_LIMIT_VOLTAGE;
-    }
-    const real free = a->gain_Nm_per_V * s.voltage_V - a->back_emf_Nms * speed;
-    s.torque_Nm = a->circuit == LACONIC_MOTOR_DRIVEN ? cut(free, a->torque_limit_Nm) : free;
-    s.current_A = s.torque_Nm * a->ampere_per_Nm;
-    if (s.torque_Nm < free || s.torque_Nm > free) {
-        s.limit = LACONIC_LIMIT_CURRENT;
-        s.voltage_V = (s.torque_Nm + a->back_emf_Nms * speed) / a->gain_Nm_per_V;
-    }
-    return s;
-}
-
-/* V = V₀ − R_s Σ I_i U_i/V by Newton's method: drive.c. */
-#define TREE_SAG_ROUNDS 6
-#define TREE_LEAST_SLOPE R(0.5)
+/* Of a control period, by which it may miss whole steps. */
 #ifdef LACONIC_SINGLE
-#define TREE_FOUND R(3e-7)
 #define TREE_FITS R(1e-3)
 #else
-#define TREE_FOUND R(1e-15)
 #define TREE_FITS R(1e-6)
 #endif
+
+motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V) {
+    const laconic_tree_motor *a = &m->motor[axis];
+    return motor_state_of(a->circuit, a->gain_Nm_per_V, a->back_emf_Nms, a->torque_limit_Nm, a->ampere_per_Nm,
+                          command_V, speed, terminal_V);
+}
 
 static real tree_drawn_A(const tree_model *m, const real command_V[], const tree_state *state, real terminal_V,
                          real *per_volt) {
@@ -39,7 +22,7 @@ static real tree_drawn_A(const tree_model *m, const real command_V[], const tree
     for (int32_t i = 0; i < m->wheel_count + m->body_count; i++) {
         const laconic_tree_motor *a = &m->motor[i];
         if (a->circuit != LACONIC_MOTOR_DRIVEN || a->ampere_per_Nm == R(0)) continue;
-        const tree_motor_state s = laconic_tree_motor_at(m, i, command_V[i], tree_axis_speed(m, state, i), terminal_V);
+        const motor_state s = laconic_tree_motor_at(m, i, command_V[i], tree_axis_speed(m, state, i), terminal_V);
         const bool whole = s.limit == LACONIC_LIMIT_VOLTAGE;
         const real duty = whole ? (command_V[i] > R(0) ? R(1) : R(-1)) : s.voltage_V / terminal_V;
         const real current = s.current_A * duty;
@@ -53,14 +36,10 @@ real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], 
     real volts = state->supply_voltage_V > R(0) ? state->supply_voltage_V : m->supply_V;
     if (!(m->supply_V > R(0))) return R(-1);
     if (!(m->supply_resistance_ohm > R(0))) return m->supply_V;
-    for (int k = 0; k < TREE_SAG_ROUNDS; k++) {
+    for (int k = 0; k < SAG_ROUNDS; k++) {
         real per_volt = R(0);
         const real current = tree_drawn_A(m, command_V, state, volts, &per_volt);
-        const real off = m->supply_V - m->supply_resistance_ohm * current - volts;
-        const real slope = R(1) + m->supply_resistance_ohm * per_volt;
-        const real next = volts + off / (slope > TREE_LEAST_SLOPE ? slope : TREE_LEAST_SLOPE);
-        volts = next > R(0.5) * volts ? next : R(0.5) * volts; /* stays above 0 */
-        if (magnitude(off) <= TREE_FOUND * volts) break;
+        if (sag_round(&volts, m->supply_V, m->supply_resistance_ohm, current, per_volt)) break;
     }
     return volts;
 }

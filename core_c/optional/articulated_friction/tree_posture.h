@@ -127,13 +127,13 @@ static inline void tree_velocities(vector velocity[], const tree_posture *p, con
 }
 
 /* Jᵀ of a wrench on each body (force, moment about its centre of mass): leaf to root, about each hinge. */
-static inline void tree_gather(tree_vector *out, const tree_posture *p, const tree_model *m, const vector wrench[]) {
+static inline void tree_gather(tree_vector *out, const tree_posture *p, const tree_model *m, const vector wrenches[]) {
     vector sum[TREE_BODIES]; /* about the body's hinge */
-    sum[0] = wrench[0];
+    sum[0] = wrenches[0];
     for (int32_t b = 1; b <= m->body_count; b++) {
         const real dx = p->com_x[b] - p->hinge_x[b], dy = p->com_y[b] - p->hinge_y[b];
-        sum[b] = wrench[b];
-        sum[b].z += dx * wrench[b].y - dy * wrench[b].x;
+        sum[b] = wrenches[b];
+        sum[b].z += dx * wrenches[b].y - dy * wrenches[b].x;
     }
     for (int32_t b = m->body_count; b >= 1; b--) {
         const int32_t on = m->body[b].parent;

@@ -4,8 +4,6 @@
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
-static real tree_own_or(real own, real common) { return own > R(0) ? own : common; }
-
 /* ------------------------------------------------------------------------------------------ bodies -- */
 
 static void tree_fill_carriage(laconic_tree_model *m, const laconic_tree_vehicle *v) {
@@ -73,11 +71,8 @@ static void tree_fill_heights(laconic_tree_model *m) {
         mass[m->body[b].group] += m->body[b].mass_kg;
         moment[m->body[b].group] += m->body[b].mass_kg * m->body[b].com_z_m;
     }
-    for (int32_t b = 0; b <= m->body_count; b++) {
-        if (m->body[b].group != b) continue;
-        m->group_count++;
-        m->body[b].com_z_m = mass[b] > R(0) ? moment[b] / mass[b] : R(0);
-    }
+    for (int32_t b = 0; b <= m->body_count; b++)
+        if (m->body[b].group == b) m->body[b].com_z_m = mass[b] > R(0) ? moment[b] / mass[b] : R(0);
 }
 
 /* ------------------------------------------------------------------------------------------ wheels -- */
@@ -86,26 +81,26 @@ static void tree_fill_wheel(laconic_tree_model *m, const laconic_tree_vehicle *v
     const laconic_vehicle *base = &v->hinged.base;
     const laconic_wheel *wheel = &base->wheel[i];
     const wheel_values own = laconic_wheel_values(base, i);
+    const bool fixed = wheel->kind == LACONIC_WHEEL_FIXED;
     laconic_tree_rim *w = &m->wheel[i];
     direction u;
     const real sine = laconic_pull_direction(&u, wheel);
     w->body = v->hinged.wheel_body[i];
     w->locked = wheel->locked;
-    w->fixed = wheel->kind == LACONIC_WHEEL_FIXED;
     w->x_m = wheel->x_m - (w->body == 0 ? m->com_x_m : R(0));
     w->y_m = wheel->y_m - (w->body == 0 ? m->com_y_m : R(0));
     w->pull[0] = u.cosine;
     w->pull[1] = u.sine;
-    w->drag = w->fixed ? R(1) : tree_own_or(wheel->own_roller_drag, base->ground.roller_drag);
-    w->arm_across_m = w->fixed ? R(0) : own.radius_m * laconic_direction_of_angle(wheel->roller_rad).cosine;
+    w->drag = fixed ? R(1) : own_or_common(wheel->own_roller_drag, base->ground.roller_drag);
+    w->arm_across_m = fixed ? R(0) : own.radius_m * laconic_direction_of_angle(wheel->roller_rad).cosine;
     w->rim[0] = own.radius_m * sine;
     w->rim[1] = w->drag * w->arm_across_m;
     w->rim_size = laconic_root(w->rim[0] * w->rim[0] + w->rim[1] * w->rim[1]);
     for (int k = 0; k < 2; k++) w->rolling[k] = w->rim[k] / w->rim_size;
     w->radius_m = own.radius_m;
     w->inertia_kgm2 = own.inertia_kgm2;
-    w->friction_coefficient = tree_own_or(wheel->own_friction_coefficient, base->ground.friction_coefficient);
-    w->dry_Nm = tree_own_or(wheel->own_axle_friction_Nm, base->ground.axle_friction_Nm);
+    w->friction_coefficient = own_or_common(wheel->own_friction_coefficient, base->ground.friction_coefficient);
+    w->dry_Nm = own_or_common(wheel->own_axle_friction_Nm, base->ground.axle_friction_Nm);
     w->load_N = v->wheel[i].load_N;
     w->scrub_radius_m = v->wheel[i].scrub_radius_m;
     w->scrub_fade_m = v->wheel[i].scrub_fade_m;
@@ -195,10 +190,7 @@ static real tree_body_size(const tree_body *b) {
 
 static bool tree_in_range(const laconic_tree_model *m) {
     real sum = m->supply_V + m->supply_resistance_ohm;
-    for (int32_t b = 0; b <= m->body_count; b++) {
-        sum += tree_body_size(&m->body[b]);
-        if (b > 0) sum += zero_if_finite(R(1) / (m->body[b].yaw_inertia_kgm2 + m->body[b].padding_kgm2 + R(1)));
-    }
+    for (int32_t b = 0; b <= m->body_count; b++) sum += tree_body_size(&m->body[b]);
     for (int32_t i = 0; i < m->wheel_count; i++) {
         const laconic_tree_rim *w = &m->wheel[i];
         sum += magnitude(w->x_m) + magnitude(w->y_m) + w->rim_size + w->inertia_kgm2 + R(1) / w->inertia_kgm2 +

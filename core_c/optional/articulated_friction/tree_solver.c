@@ -4,32 +4,11 @@
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 
-#ifdef LACONIC_SINGLE
-#define TREE_TOLERANCE R(1e-5)
-#define TREE_RESOLVED R(4e-5)
-#define TREE_ROUNDED R(3e-7)
-#define TREE_CLOSE R(9)
-#define TREE_SNAP R(1e-4)
-#define TREE_MOST_STRESS R(1e4)
-#else
-#define TREE_TOLERANCE R(1e-12)
-#define TREE_RESOLVED R(3e-11)
-#define TREE_ROUNDED R(6e-16)
-#define TREE_CLOSE R(900)
-#define TREE_SNAP R(1e-10)
-#define TREE_MOST_STRESS R(1e8)
-#endif
-#define TREE_SMALLEST_ENERGY (LACONIC_REAL_MIN / (TREE_TOLERANCE * TREE_TOLERANCE))
-#define TREE_EXACT_PASSES 6
-#define TREE_FIRST_AHEAD 5
-#define TREE_AHEAD 3
-#define TREE_TRIED 3
-#define TREE_WORTH_IT R(0.1)
 #define TREE_NEARLY R(4) /* where rounding leaves no more to find: twice the tolerance, squared */
 #define TREE_MOST_STRESSES 3
 #define TREE_SAME R(0.01)     /* of a change, squared */
 #define TREE_FARTHEST R(1e12) /* of the change in one pass */
-#define TREE_ALMOST (R(1e2) * TREE_TOLERANCE)
+#define TREE_ALMOST (R(1e2) * TOLERANCE)
 
 /* --------------------------------------------------------------------------------------- the search -- */
 
@@ -61,11 +40,11 @@ static real tree_free_energy(const tree_problem *p) {
 static void tree_forget_stress(tree_problem *p) {
     for (int32_t i = 0; i < p->contact_count; i++) {
         real *q = p->contact[i].impulse;
-        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > TREE_MOST_STRESS * p->scale) q[0] = q[1] = R(0);
+        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > MOST_STRESS * p->scale) q[0] = q[1] = R(0);
     }
     for (int32_t i = 0; i < p->element_count; i++) {
         tree_element *e = &p->element[i];
-        if (e->q * e->q * e->mobility > TREE_MOST_STRESS * p->scale) e->q = R(0);
+        if (e->q * e->q * e->mobility > MOST_STRESS * p->scale) e->q = R(0);
     }
 }
 
@@ -77,7 +56,7 @@ void laconic_tree_follow(tree_problem *p) {
         tree_contact *c = &p->contact[i];
         const real push = c->wheel->inertia_kgm2 * c->load.free_speed + c->wheel->rim[0] * c->impulse[0] +
                           c->wheel->rim[1] * c->impulse[1];
-        c->speed = tree_turning(c, R(0), c->load.axle, push).speed;
+        c->speed = turning_of(c->wheel->inertia_kgm2, &c->load, R(0), c->load.axle, push).speed;
     }
 }
 
@@ -93,7 +72,7 @@ static void tree_snap(tree_problem *p) {
         const tree_contact *c = &p->contact[i];
         energy += c->wheel->inertia_kgm2 * c->speed * c->speed;
     }
-    if (energy <= TREE_SNAP * TREE_SNAP * p->scale) tree_rest(p);
+    if (energy <= SNAP * SNAP * p->scale) tree_rest(p);
 }
 
 static real tree_imbalance_square(const tree_problem *p) {
@@ -103,7 +82,7 @@ static real tree_imbalance_square(const tree_problem *p) {
 }
 
 static bool tree_is_solved(const tree_problem *p, real residual, real times) {
-    const real most = times * TREE_TOLERANCE * TREE_TOLERANCE * p->scale;
+    const real most = times * TOLERANCE * TOLERANCE * p->scale;
     return residual <= most && residual + tree_imbalance_square(p) <= most;
 }
 
@@ -117,8 +96,7 @@ static bool tree_is_resolved(tree_search *at) {
         residual -= at->sight[i].firm;
     }
     for (int32_t i = 0; i < p->element_count; i++) stress += p->element[i].q * p->element[i].q * p->element[i].mobility;
-    return residual + tree_imbalance_square(p) <=
-           TREE_RESOLVED * TREE_RESOLVED * p->scale + TREE_ROUNDED * TREE_ROUNDED * stress;
+    return residual + tree_imbalance_square(p) <= RESOLVED * RESOLVED * p->scale + ROUNDED * ROUNDED * stress;
 }
 
 typedef struct tree_kept {
@@ -226,7 +204,7 @@ static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
         const real residual = laconic_tree_see(at);
         ++*passes;
         if (tree_is_solved(at->p, residual, R(1))) return true;
-        const bool stalls = pass > 1 && residual > TREE_WORTH_IT * before;
+        const bool stalls = pass > 1 && residual > WORTH_IT * before;
         if (stalls && tree_is_solved(at->p, residual, TREE_NEARLY)) return true;
         before = residual;
         if (stalls && stresses < TREE_MOST_STRESSES && residual <= TREE_ALMOST * TREE_ALMOST * at->p->scale &&
@@ -247,14 +225,14 @@ RARE bool tree_search_along_path(tree_search *at, int32_t *passes) {
     at->p->penalty = PENALTY; /* rounding: contacts that hold each other may need it */
     for (int32_t i = 0; i < at->p->element_count; i++) laconic_tree_stiffen(&at->p->element[i], PENALTY);
     laconic_tree_start_path(at->p, &path);
-    for (int32_t ahead = TREE_FIRST_AHEAD; *passes + ahead + TREE_TRIED + 1 <= TREE_MOST_PASSES; ahead = TREE_AHEAD) {
+    for (int32_t ahead = FIRST_AHEAD; *passes + ahead + TRIED + 1 <= FRICTION_MOST_PASSES; ahead = AHEAD) {
         for (int32_t pass = 0; pass < ahead; pass++) laconic_tree_follow_path(at->p, &path);
         *passes += ahead;
         tree_keep(&kept, at->p);
-        if (tree_pass_exactly(at, TREE_TRIED, passes)) return true;
-        if (ahead == TREE_AHEAD && tree_is_solved(at->p, laconic_tree_see(at), TREE_CLOSE)) return true;
+        if (tree_pass_exactly(at, TRIED, passes)) return true;
+        if (ahead == AHEAD && tree_is_solved(at->p, laconic_tree_see(at), CLOSE)) return true;
         tree_go_back(at->p, &kept);
-        if (ahead == TREE_AHEAD && tree_is_resolved(at)) return true;
+        if (ahead == AHEAD && tree_is_resolved(at)) return true;
     }
     return false;
 }
@@ -273,10 +251,10 @@ int32_t laconic_tree_solve(tree_problem *p) {
     at.p = p;
     p->scale = tree_free_energy(p);
     if (!is_finite(p->scale)) return 0;
-    if (p->scale < TREE_SMALLEST_ENERGY) return tree_nothing(p);
+    if (p->scale < SMALLEST_ENERGY) return tree_nothing(p);
     tree_forget_stress(p);
     laconic_tree_follow(p);
-    if (!tree_pass_exactly(&at, TREE_EXACT_PASSES, &passes) && !tree_search_along_path(&at, &passes)) return 0;
+    if (!tree_pass_exactly(&at, EXACT_PASSES, &passes) && !tree_search_along_path(&at, &passes)) return 0;
     tree_snap(p);
     return passes;
 }

@@ -14,7 +14,6 @@
 
 #define TREE_WHEELS LACONIC_MAX_WHEELS
 #define TREE_ELEMENTS (4 * LACONIC_MAX_BODIES + LACONIC_MAX_WHEELS)
-#define TREE_MOST_PASSES 50
 
 typedef struct tree_contact {
     const tree_body *on;
@@ -77,9 +76,7 @@ void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p);
 void laconic_tree_follow(tree_problem *p);
 
 /* Where the search is on the central path of the smoothed problem. */
-typedef struct tree_path {
-    real softness, fastest, axle[TREE_WHEELS], motor[TREE_WHEELS];
-} tree_path;
+typedef friction_path tree_path;
 
 void laconic_tree_start_path(tree_problem *p, tree_path *path);
 void laconic_tree_follow_path(tree_problem *p, tree_path *path);
@@ -96,7 +93,7 @@ static inline bool tree_one_sided(const tree_element *e) {
 
 /* What a pass sees of a contact. */
 typedef struct tree_sight {
-    real moved[2], t[2], length, axle, firm, rest;
+    real moved[2], t[2], length, axle, firm;
     bool locked;
 } tree_sight;
 
@@ -114,13 +111,6 @@ void laconic_tree_exact_pass(tree_search *at);
 
 /* Sets the law of an element inside its bounds; `of_mass`: the penalty, over the mass that it holds. */
 void laconic_tree_stiffen(tree_element *e, real of_mass);
-
-/* A wheel's speed, and how its resistance grows with it: friction_internals.h. */
-static inline turning tree_turning(const tree_contact *c, real added, real axle, real push) {
-    friction_wheel of;
-    of.inertia = c->wheel->inertia_kgm2;
-    return turning_of(&of, &c->load, added, axle, push);
-}
 
 #endif
 #endif

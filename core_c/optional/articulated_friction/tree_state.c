@@ -1,20 +1,8 @@
 /* The state in which a tree starts, and what it shows. */
+#include "articulated_vehicle.h"
 #include "tree_step.h"
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
-
-#ifdef LACONIC_SINGLE
-#define TREE_LARGEST_START R(1e8)
-#else
-#define TREE_LARGEST_START R(1e30)
-#endif
-
-static laconic_status tree_check_start_number(real value, int32_t field, int32_t item, laconic_refusal *why) {
-    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, (laconic_field)field, item, value, R(0));
-    if (!(magnitude(value) < LARGEST_YAW_CHANGE_RAD) || magnitude(value) > TREE_LARGEST_START)
-        return refuse(why, LACONIC_OVERFLOW, (laconic_field)field, item, value, R(0));
-    return LACONIC_OK;
-}
 
 static laconic_status tree_check_stops(const tree_body *link, real angle, int32_t b, laconic_refusal *why) {
     const laconic_field field = (laconic_field)LACONIC_FIELD_OF_START_HINGE_ANGLE;
@@ -27,23 +15,14 @@ static laconic_status tree_check_stops(const tree_body *link, real angle, int32_
 
 static laconic_status tree_check_start(const tree_model *m, const laconic_tree_start *start, laconic_refusal *why) {
     const laconic_articulated_start *h = &start->hinged;
-    laconic_status status = LACONIC_OK;
-    for (int32_t k = 0; status == LACONIC_OK && k < 2; k++)
-        status = tree_check_start_number(h->velocity_m_per_s[k], LACONIC_FIELD_OF_START_VELOCITY, k + 1, why);
-    if (status == LACONIC_OK)
-        status = tree_check_start_number(h->yaw_rate_rad_per_s, LACONIC_FIELD_OF_START_YAW_RATE, 0, why);
-    if (status == LACONIC_OK) status = tree_check_start_number(h->x_m, LACONIC_FIELD_START_X, 0, why);
-    if (status == LACONIC_OK) status = tree_check_start_number(h->y_m, LACONIC_FIELD_START_Y, 0, why);
-    if (status == LACONIC_OK) status = tree_check_start_number(h->heading_rad, LACONIC_FIELD_START_HEADING, 0, why);
+    laconic_status status = laconic_articulated_check_start(h, TREE_LARGEST, why);
     for (int32_t b = 1; status == LACONIC_OK && b <= m->body_count; b++) {
-        const real angle = h->hinge_angle_rad[b - 1];
-        status = tree_check_start_number(angle, LACONIC_FIELD_OF_START_HINGE_ANGLE, b, why);
-        if (status == LACONIC_OK)
-            status = tree_check_start_number(h->hinge_rate_rad_per_s[b - 1], LACONIC_FIELD_OF_START_HINGE_RATE, b, why);
-        if (status == LACONIC_OK) status = tree_check_stops(&m->body[b], angle, b, why);
+        status = laconic_articulated_check_hinge_start(h, b, TREE_LARGEST, why);
+        if (status == LACONIC_OK) status = tree_check_stops(&m->body[b], h->hinge_angle_rad[b - 1], b, why);
     }
     for (int32_t i = 0; status == LACONIC_OK && i < m->wheel_count; i++)
-        status = tree_check_start_number(start->wheel_speed_rad_per_s[i], LACONIC_FIELD_START_WHEEL_SPEED, i + 1, why);
+        status = laconic_articulated_check_start_number(start->wheel_speed_rad_per_s[i],
+                                                        LACONIC_FIELD_START_WHEEL_SPEED, i + 1, TREE_LARGEST, why);
     return status;
 }
 

@@ -14,11 +14,6 @@
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
 #define TREE_MOST_PARTS 8
 #define TREE_STANDING_M_PER_S R(1e-6) /* else a fading scrub that holds a stress would creep, ever slower, for ever */
-#ifdef LACONIC_SINGLE
-#define TREE_LARGEST R(1e8)
-#else
-#define TREE_LARGEST R(1e30)
-#endif
 
 /* ------------------------------------------------------------------------------------- free motion -- */
 
@@ -59,11 +54,10 @@ static void tree_pull(tree_part *p, const tree_state *s) {
     const bool world = in->world_force_N[0] != R(0) || in->world_force_N[1] != R(0);
     for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = none;
     p->pull[0] = vector_of(in->body_force_N[0], in->body_force_N[1], in->body_moment_Nm);
-    p->end = direction_with(R(1), R(0));
     if (!world && !p->m->sloped) return;
-    p->end = direction_of_binary_angle(
+    const direction end = direction_of_binary_angle(
         (laconic_binary_angle)(s->heading.fraction + laconic_binary_angle_of(p->h * s->z[2])));
-    const vector force = tree_seen(p->end, in->world_force_N), down = tree_seen(p->end, p->m->pull_m_per_s2);
+    const vector force = tree_seen(end, in->world_force_N), down = tree_seen(end, p->m->pull_m_per_s2);
     p->pull[0] = plus(p->pull[0], force);
     p->pull[0].z += in->world_force_point_m[0] * force.y - in->world_force_point_m[1] * force.x;
     for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));
@@ -168,7 +162,7 @@ static void tree_add_servo(tree_part *p, int32_t b, const tree_state *s) {
 static void tree_add_motor(tree_part *p, int32_t b, const tree_state *s) {
     const int32_t axis = p->m->wheel_count + b - 1;
     const laconic_tree_motor *motor = &p->m->motor[axis];
-    const real volts = p->terminal_V < R(0) ? p->command_V[axis] : cut(p->command_V[axis], p->terminal_V);
+    const real volts = within_supply(p->command_V[axis], p->terminal_V);
     tree_drive_hinge(p, b, motor->gain_Nm_per_V * volts, motor->back_emf_Nms, motor->torque_limit_Nm, s);
 }
 
@@ -219,7 +213,7 @@ static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_stat
     const laconic_tree_rim *w = c->wheel;
     const laconic_tree_motor *a = &p->m->motor[i];
     const bool driven = a->circuit == LACONIC_MOTOR_DRIVEN;
-    const real volts = !driven ? R(0) : p->terminal_V < R(0) ? p->command_V[i] : cut(p->command_V[i], p->terminal_V);
+    const real volts = driven ? within_supply(p->command_V[i], p->terminal_V) : R(0);
     friction_load *l = &c->load;
     l->grip = p->h * w->friction_coefficient * p->loads.carried_N[i];
     l->axle = p->h * w->dry_Nm;

@@ -2,9 +2,17 @@
 #ifndef LACONIC_TREE_STEP_H
 #define LACONIC_TREE_STEP_H
 
+#include "friction_vehicle.h"
 #include "tree_solver.h"
 
 #if LACONIC_MAX_BODIES > 0 && LACONIC_WITH_FRICTION
+
+/* The largest number of a start, and sum of speeds after a step. */
+#ifdef LACONIC_SINGLE
+#define TREE_LARGEST R(1e8)
+#else
+#define TREE_LARGEST R(1e30)
+#endif
 
 typedef laconic_tree_state tree_state;
 
@@ -31,7 +39,6 @@ typedef struct tree_part {
     const laconic_tree_input *in;
     real h;
     tree_posture at;
-    direction end;               /* heading of body 0 at the end, where something depends on it */
     vector carried[TREE_BODIES]; /* the bodies' velocities, in the axes at the end               */
     vector pull[TREE_BODIES];    /* forces and moments from outside, axes at the end             */
     real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */
@@ -48,13 +55,8 @@ typedef struct tree_part {
 
 /* ------------------------------------------------------------------------------------- drives -- */
 
-typedef struct tree_motor_state {
-    real torque_Nm, current_A, voltage_V;
-    laconic_drive_limit limit;
-} tree_motor_state;
-
-/* `terminal_V`: of the supply; below 0: voltages are not cut. */
-tree_motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V);
+/* In Nm. `terminal_V` as for within_supply(). */
+motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V);
 
 /* Voltage of the supply under the motors' currents at the speeds of the state; −1 without a supply. */
 real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], const tree_state *state);

@@ -1,5 +1,6 @@
 /* The texts of a refusal: the name of its status, and one line with field, item, fault and remedy. */
 #include "common.h"
+#include "laconic/articulated.h"
 
 /* Numbers have six digits, as printf's %.6g; two that differ have as many more as show it, up to what this precision
  * holds. */
@@ -112,18 +113,22 @@ static size_t end_text(const writer *w) {
 
 #define METHOD_NAME(number, identifier, name, order, TAKES, KEEPS, NEEDS, title) LACONIC_METHOD_WITH_##NEEDS(name, )
 
-/* As laconic_articulated_method_name() has them: that part is linked only where it is called. */
-#define METHODS_WITH_HINGES "auto, rk4, circle or moebius-4"
+static const char *const plain_methods[] = {LACONIC_METHODS(METHOD_NAME)};
+static const char *const methods_with_hinges[] = {LACONIC_ARTICULATED_METHOD_NAMES};
 
 /* All in the order of the numbers, "or" before the last. */
-static void put_method_names(writer *w) {
-    static const char *const names[] = {LACONIC_METHODS(METHOD_NAME)};
-    const size_t last = sizeof names / sizeof names[0] - 1;
-    for (size_t i = 0; i < last; i++) {
+static void put_names(writer *w, const char *const names[], size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0) put_text(w, i + 1 < count ? ", " : " or ");
         put_text(w, names[i]);
-        put_text(w, i + 1 < last ? ", " : " or ");
     }
-    put_text(w, names[last]);
+}
+
+static void put_method_names(writer *w, bool with_hinges) {
+    if (with_hinges)
+        put_names(w, methods_with_hinges, sizeof methods_with_hinges / sizeof methods_with_hinges[0]);
+    else
+        put_names(w, plain_methods, sizeof plain_methods / sizeof plain_methods[0]);
 }
 
 static bool look_alike(real a, real b, int32_t count) {
@@ -149,10 +154,8 @@ static void put_explanation(writer *w, const laconic_refusal *why) {
             put_number(w, why->value, count);
         else if (*c == '@')
             put_number(w, why->limit, count);
-        else if (*c == '$' && why->limit > R(0))
-            put_text(w, METHODS_WITH_HINGES);
         else if (*c == '$')
-            put_method_names(w);
+            put_method_names(w, why->limit > R(0));
         else
             put(w, *c);
     }

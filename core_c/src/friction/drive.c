@@ -2,38 +2,11 @@
 #include "friction_vehicle.h"
 
 #if LACONIC_WITH_FRICTION
-/* Torque c1 U − c2ₑ s within the current limit; c2ₑ/c1 is the back-EMF per speed, so U − that is R_a times the
- * current. A limited motor has the voltage at its terminals that its controller sets for the limit. */
 motor_state laconic_motor_at(const laconic_friction *friction, int32_t wheel, real command_V, real speed,
                              real terminal_V) {
     const laconic_friction_axle *a = &friction->axle[wheel];
-    motor_state m = {R(0), R(0), R(0), LACONIC_LIMIT_NONE};
-    if (a->circuit == LACONIC_MOTOR_OPEN) return m;
-    if (a->circuit == LACONIC_MOTOR_DRIVEN) {
-        m.voltage_V = terminal_V >= R(0) ? cut(command_V, terminal_V) : command_V;
-        if (m.voltage_V < command_V || m.voltage_V > command_V) m.limit = LACONIC_LIMIT_VOLTAGE;
-    }
-    const real free = a->gain * m.voltage_V - a->back_emf * speed;
-    m.torque = a->circuit == LACONIC_MOTOR_DRIVEN ? cut(free, a->torque_limit) : free;
-    m.current_A = m.torque * a->ampere;
-    if (m.torque < free || m.torque > free) {
-        m.limit = LACONIC_LIMIT_CURRENT;
-        m.voltage_V = (m.torque + a->back_emf * speed) / a->gain;
-    }
-    return m;
+    return motor_state_of(a->circuit, a->gain, a->back_emf, a->torque_limit, a->ampere, command_V, speed, terminal_V);
 }
-
-/* V = V₀ − R_s Σ I_i U_i/V: each motor takes the share of the supply's voltage that its controller gives it. Newton's
- * method: a motor that gets the whole voltage takes more with it, any other one less, as its power stays. From the step
- * before it takes two rounds, the second to see that the first sufficed. */
-#define SAG_ROUNDS 6
-#define LEAST_SLOPE R(0.5) /* nearer to the most that the supply can give, Newton's steps would leave the range */
-
-#ifdef LACONIC_SINGLE
-#define FOUND R(3e-7)
-#else
-#define FOUND R(1e-15)
-#endif
 
 static real drawn_A(const laconic_friction *f, const laconic_input *input, const real speed[], real terminal_V,
                     real *per_volt) {
@@ -62,11 +35,7 @@ real laconic_supply_voltage(const laconic_friction *friction, const laconic_inpu
     for (int k = 0; k < SAG_ROUNDS; k++) {
         real per_volt = R(0);
         const real current = drawn_A(f, input, speed, volts, &per_volt);
-        const real off = f->supply_V - f->supply_resistance_ohm * current - volts;
-        const real slope = R(1) + f->supply_resistance_ohm * per_volt;
-        const real next = volts + off / (slope > LEAST_SLOPE ? slope : LEAST_SLOPE);
-        volts = next > R(0.5) * volts ? next : R(0.5) * volts; /* stays above 0 */
-        if (magnitude(off) <= FOUND * volts) break;
+        if (sag_round(&volts, f->supply_V, f->supply_resistance_ohm, current, per_volt)) break;
     }
     return volts;
 }

@@ -5,8 +5,6 @@
 #include "least_norm.h"
 
 #if LACONIC_WITH_FRICTION
-static real own_or(real own, real common) { return own > R(0) ? own : common; }
-
 static void fill_contact(laconic_friction *f, const laconic_vehicle *vehicle, const body *b, int32_t i) {
     const laconic_wheel *wheel = &vehicle->wheel[i];
     laconic_friction_wheel *w = &f->wheel[i];
@@ -28,7 +26,7 @@ static void fill_contact(laconic_friction *f, const laconic_vehicle *vehicle, co
     w->rim_along = a->arm_m[0] / b->radius_m;
     w->rim_across = a->arm_m[1] / b->radius_m;
     w->inertia = own.inertia_kgm2 / f->energy_J;
-    w->drag = fixed ? R(1) : f->slips ? own_or(wheel->own_roller_drag, vehicle->ground.roller_drag) : R(0);
+    w->drag = fixed ? R(1) : f->slips ? own_or_common(wheel->own_roller_drag, vehicle->ground.roller_drag) : R(0);
     laconic_friction_prepare(w);
 }
 
@@ -49,9 +47,11 @@ static void fill_axle(laconic_friction *f, const laconic_vehicle *vehicle, int32
                           ? magnitude(per_ampere) * drive->current_limit_A
                           : LACONIC_REAL_MAX;
     a->ampere = per_ampere != R(0) ? R(1) / per_ampere : R(0);
-    a->dry = f->slips ? own_or(wheel->own_axle_friction_Nm, vehicle->ground.axle_friction_Nm) / f->energy_J : R(0);
-    a->friction_coefficient = f->slips ? own_or(wheel->own_friction_coefficient, vehicle->ground.friction_coefficient)
-                                       : vehicle->friction_coefficient;
+    a->dry =
+        f->slips ? own_or_common(wheel->own_axle_friction_Nm, vehicle->ground.axle_friction_Nm) / f->energy_J : R(0);
+    a->friction_coefficient = f->slips
+                                  ? own_or_common(wheel->own_friction_coefficient, vehicle->ground.friction_coefficient)
+                                  : vehicle->friction_coefficient;
 }
 
 static void place_points(laconic_friction *f, const laconic_vehicle *vehicle, const body *b) {

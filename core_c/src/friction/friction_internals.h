@@ -1,4 +1,5 @@
-/* What the two kinds of pass of the friction solver share: the three equations for ν, and a wheel's own equation. */
+/* What the kinds of pass of the friction solver share: their constants, the three equations for ν, and a wheel's own
+ * equation. */
 #ifndef LACONIC_FRICTION_INTERNALS_H
 #define LACONIC_FRICTION_INTERNALS_H
 
@@ -14,6 +15,46 @@
 #define PENALTY R(1e5)
 #define HERON_ROUNDS 4
 #endif
+
+/* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
+ * contacts and light wheels let a speed be off by many times the residual, and speeds shall be right to
+ * 1e-9. From (|t|/grip)² = BORDER on, slip outwards tells that a contact slips; in single it would tell rounding
+ * errors. Rounding hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many
+ * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
+ * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
+ * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
+ * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. ROUNDED
+ * is 2.5 units in the last place in both types. It must exceed HIDDEN, which is part of the residual that it bounds. */
+#ifdef LACONIC_SINGLE
+#define TOLERANCE R(1e-5)
+#define RESOLVED R(4e-5)
+#define ROUNDED R(3e-7)
+#define CLOSE R(9)
+#define SNAP R(1e-4)
+#define BORDER R(1)
+#define HIDDEN R(1e-8)
+#define MOST_STRESS R(1e4)
+#else
+#define TOLERANCE R(1e-12)
+#define RESOLVED R(3e-11)
+#define ROUNDED R(6e-16)
+#define CLOSE R(900)
+#define SNAP R(1e-10)
+#define BORDER R(0.998)
+#define HIDDEN R(1e-16)
+#define MOST_STRESS R(1e8)
+#endif
+
+#define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
+#define NO_SLIP R(1e-30) /* a direction without slip, as across free rollers, has this share of the mobility or less */
+#define EXACT_PASSES 6   /* of warm steps 1 in 100 needs more */
+#define FIRST_AHEAD 5    /* passes along the central path, before exact ones are tried */
+#define AHEAD 3          /* and before each time after that */
+#define TRIED 3          /* exact passes at a time */
+#define WORTH_IT R(0.1)  /* of the residual, squared: an exact pass that does not bring it down to this leads nowhere */
+
+/* 1/x, or 0 where there is nothing to act on. */
+static inline real inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
 /* √x for x from the least normal number on, some units in the last place; below, a number below 1e-150 (1e-18); not for
  * infinity. It costs a quarter of laconic_root(), which does not use IEEE's layout: half the exponent's bits are the
@@ -61,8 +102,8 @@ typedef struct turning {
 } turning;
 
 /* Solves (inertia + viscous + added) s + axle sign(s) − motor(s) = push: monotone and linear by pieces. */
-static inline turning turning_of(const friction_wheel *w, const friction_load *l, real added, real axle, real push) {
-    const real own = w->inertia + l->viscous, start = push + cut(l->drive, l->drive_limit);
+static inline turning turning_of(real inertia, const friction_load *l, real added, real axle, real push) {
+    const real own = inertia + l->viscous, start = push + cut(l->drive, l->drive_limit);
     const real driven = push + (start > R(0) ? -axle : axle);
     turning out = {R(0), own + l->drive_slope, magnitude(start) <= axle};
     real motor;

@@ -17,43 +17,6 @@
 #include "friction_solver.h"
 #include "friction_internals.h"
 
-/* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
- * contacts and light wheels let a speed be off by many times the residual, and speeds shall be right to
- * 1e-9. From (|t|/grip)² = BORDER on, slip outwards tells that a contact slips; in single it would tell rounding
- * errors. Rounding hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many
- * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
- * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
- * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
- * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. ROUNDED
- * is 2.5 units in the last place in both types. It must exceed HIDDEN, which is part of the residual that it bounds. */
-#ifdef LACONIC_SINGLE
-#define TOLERANCE R(1e-5)
-#define RESOLVED R(4e-5)
-#define ROUNDED R(3e-7)
-#define CLOSE R(9)
-#define SNAP R(1e-4)
-#define BORDER R(1)
-#define HIDDEN R(1e-8)
-#define MOST_STRESS R(1e4)
-#else
-#define TOLERANCE R(1e-12)
-#define RESOLVED R(3e-11)
-#define ROUNDED R(6e-16)
-#define CLOSE R(900)
-#define SNAP R(1e-10)
-#define BORDER R(0.998)
-#define HIDDEN R(1e-16)
-#define MOST_STRESS R(1e8)
-#endif
-
-#define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
-#define NO_SLIP R(1e-30) /* a direction without slip, as across free rollers, has this share of the mobility or less */
-#define EXACT_PASSES 6   /* of warm steps 1 in 100 needs more */
-#define FIRST_AHEAD 5    /* passes along the central path, before exact ones are tried */
-#define AHEAD 3          /* and before each time after that */
-#define TRIED 3          /* exact passes at a time */
-#define WORTH_IT R(0.1)  /* of the residual, squared: an exact pass that does not bring it down to this leads nowhere */
-
 /* A contact in a pass: how it stands, then its linear law p += gain_m (row_m·δν), and s with the first row. */
 typedef struct contact_in_pass {
     real moved[2];     /* rows·ν: slip if the wheel stood still */
@@ -68,9 +31,6 @@ typedef struct contact_in_pass {
     real stiffness[2], gain[2][2], turn;
     real impulse[2], speed;
 } contact_in_pass;
-
-/* 1/x, or 0 where there is nothing to act on. */
-static real inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
 void laconic_friction_prepare(friction_wheel *w) {
     w->row[0] = vec(w->along);
@@ -147,7 +107,7 @@ INLINE void slips(contact_in_pass *restrict c, const friction_wheel *w, const fr
         across = n[0] * p[1] - n[1] * p[0];
     }
     across += h * moved;
-    wheel = turning_of(w, l, h * rim * rim, l->axle,
+    wheel = turning_of(w->inertia, l, h * rim * rim, l->axle,
                        w->inertia * l->free_speed + l->grip * (n[0] * w->rim[0] + n[1] * w->rim[1]) + rim * across);
     across -= h * rim * wheel.speed;
     c->speed = wheel.speed;
@@ -278,7 +238,7 @@ void laconic_friction_follow(friction_search *at) {
         const friction_wheel *w = &at->wheel[i];
         const real push =
             w->inertia * at->load[i].free_speed + w->rim[0] * at->impulse[i][0] + w->rim[1] * at->impulse[i][1];
-        at->speed[i] = turning_of(w, &at->load[i], R(0), at->load[i].axle, push).speed;
+        at->speed[i] = turning_of(w->inertia, &at->load[i], R(0), at->load[i].axle, push).speed;
     }
 }
 

@@ -12,6 +12,8 @@ typedef struct wheel_values {
     real motor_damping_Nms;   /* c2_i */
 } wheel_values;
 
+static inline real own_or_common(real own, real common) { return own > R(0) ? own : common; }
+
 wheel_values laconic_wheel_values(const laconic_vehicle *vehicle, int32_t wheel);
 
 /* The body with its payload, in the paper's dimensionless numbers. */

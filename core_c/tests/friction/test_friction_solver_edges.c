@@ -197,15 +197,12 @@ static void no_pivot_is_below_the_mass_of_the_body(void) {
 
 /* A wheel with the inertia 1 under a push. */
 static turning pushed(real push, real axle, real drive, real drive_slope, real drive_limit) {
-    friction_wheel w;
     friction_load l;
-    memset(&w, 0, sizeof w);
     memset(&l, 0, sizeof l);
-    w.inertia = 1;
     l.drive = drive;
     l.drive_slope = drive_slope;
     l.drive_limit = drive_limit;
-    return turning_of(&w, &l, 0, axle, push);
+    return turning_of(1, &l, 0, axle, push);
 }
 
 /* What just does not move the wheel holds it. */

@@ -159,7 +159,7 @@ static laconic_refusal refusal;
 /* Names what was refused where it should not have been. */
 #define ASSERT_TAKEN(call) \
     do { \
-        char refused_text[300] = "ok"; \
+        char refused_text[500] = "ok"; \
         memset(&refusal, 0, sizeof refusal); \
         if ((call) != LACONIC_OK) laconic_message(&refusal, refused_text, sizeof refused_text); \
         TEST_ASSERT_EQUAL_STRING("ok", refused_text); \

@@ -12,11 +12,7 @@
  *   rates    prints twists and their rates of all bodies at the state, under the input at its start
  *   reactions  prints wheel torques, along, lateral, brakes, hinge torques, hinge forces, balance
  * A refusal prints "refused: …" and ends the program with status 3. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "laconic/articulated.h"
+#include "run_words.h"
 
 #define MAX_POWERS 8
 
@@ -36,23 +32,6 @@ static laconic_articulated_integrator integrator;
 static laconic_articulated_state state;
 static course now;
 static double time_s;
-static laconic_refusal why;
-
-static double number(void) {
-    double x;
-    if (scanf("%lf", &x) != 1) exit(2);
-    return x;
-}
-
-static laconic_real real_number(void) { return (laconic_real)number(); }
-
-static void check(laconic_status status) {
-    char text[400];
-    if (status == LACONIC_OK) return;
-    laconic_message(&why, text, sizeof text);
-    printf("refused: %s | %s\n", laconic_status_name(status), text);
-    exit(3);
-}
 
 static void read_vehicle(void) {
     memset(&vehicle, 0, sizeof vehicle);
@@ -114,14 +93,9 @@ static void read_polynomial(polynomial *p) {
 static void read_input(void) {
     laconic_articulated_input *in = &now.held;
     memset(&now, 0, sizeof now);
-    for (int i = 0; i < model.wheel_count; i++) in->base.voltage_V[i] = real_number();
-    for (int i = 0; i < model.wheel_count; i++) in->base.axle_torque_Nm[i] = real_number();
-    for (int k = 0; k < 2; k++) in->base.body_force_N[k] = real_number();
-    in->base.body_moment_Nm = real_number();
-    for (int k = 0; k < 2; k++) in->base.world_force_N[k] = real_number();
-    for (int k = 0; k < 2; k++) in->base.world_force_point_m[k] = real_number();
-    for (int b = 0; b < model.body_count; b++) in->hinge_voltage_V[b] = real_number();
-    for (int b = 0; b < model.body_count; b++) in->hinge_torque_Nm[b] = real_number();
+    read_base_input(&in->base, model.wheel_count);
+    read_many(in->hinge_voltage_V, model.body_count);
+    read_many(in->hinge_torque_Nm, model.body_count);
     for (int b = 0; b < model.body_count; b++) read_polynomial(&now.rate[b]);
     for (int k = 0; k < 3; k++) read_polynomial(&now.twist[k]);
 }
@@ -155,13 +129,13 @@ static void read_start(void) {
     laconic_articulated_start start;
     const laconic_articulated_input in = input_at(0);
     memset(&start, 0, sizeof start);
-    for (int k = 0; k < 2; k++) start.velocity_m_per_s[k] = real_number();
+    read_many(start.velocity_m_per_s, 2);
     start.yaw_rate_rad_per_s = real_number();
     start.x_m = real_number();
     start.y_m = real_number();
     start.heading_rad = real_number();
-    for (int b = 0; b < model.body_count; b++) start.hinge_angle_rad[b] = real_number();
-    for (int b = 0; b < model.body_count; b++) start.hinge_rate_rad_per_s[b] = real_number();
+    read_many(start.hinge_angle_rad, model.body_count);
+    read_many(start.hinge_rate_rad_per_s, model.body_count);
     check(laconic_articulated_state_set(&state, NULL, &model, &start, &in, &why));
     time_s = 0;
 }
@@ -181,10 +155,6 @@ static void run(void) {
         check(laconic_articulated_step(&model, &integrator, &state, start, end, &why));
     }
     time_s += duration;
-}
-
-static void print_many(const laconic_real *x, int count) {
-    for (int i = 0; i < count; i++) printf(" %.17g", (double)x[i]);
 }
 
 static void print_motion(void) {

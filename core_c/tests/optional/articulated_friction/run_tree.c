@@ -15,35 +15,15 @@
  *   books    prints energy, spring, supply, outer, servo, slip, scrub, axle, hinge, stop, motor, supply loss, numerical
  *   outputs  prints slips along and across, contact states, forces, loads, hinge torques, currents, limits
  * A refusal prints "refused: …" and ends the program with status 3. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "laconic/articulated_friction.h"
+#include "run_words.h"
 
 static laconic_tree_vehicle vehicle;
 static laconic_tree_model model;
 static laconic_tree_state state;
 static laconic_tree_input input;
-static laconic_refusal why;
 static long passes[52], growths;
 static double last_energy_J = -1; /* below 0: of springs it is known from the first step on */
-
-static double number(void) {
-    double x;
-    if (scanf("%lf", &x) != 1) exit(2);
-    return x;
-}
-
-static laconic_real real_number(void) { return (laconic_real)number(); }
-
-static void check(laconic_status status) {
-    char text[500];
-    if (status == LACONIC_OK) return;
-    laconic_message(&why, text, sizeof text);
-    printf("refused: %s | %s\n", laconic_status_name(status), text);
-    exit(3);
-}
 
 static void read_numbers(laconic_real *into[], int count) {
     for (int k = 0; k < count; k++) *into[k] = real_number();
@@ -127,9 +107,9 @@ static void read_start(void) {
     laconic_real *numbers[] = {
         &h->velocity_m_per_s[0], &h->velocity_m_per_s[1], &h->yaw_rate_rad_per_s, &h->x_m, &h->y_m, &h->heading_rad};
     read_numbers(numbers, 6);
-    for (int b = 0; b < model.body_count; b++) h->hinge_angle_rad[b] = real_number();
-    for (int b = 0; b < model.body_count; b++) h->hinge_rate_rad_per_s[b] = real_number();
-    for (int i = 0; i < model.wheel_count; i++) start.wheel_speed_rad_per_s[i] = real_number();
+    read_many(h->hinge_angle_rad, model.body_count);
+    read_many(h->hinge_rate_rad_per_s, model.body_count);
+    read_many(start.wheel_speed_rad_per_s, model.wheel_count);
     start.wheels_stand = true;
     check(laconic_tree_state_set(&state, &model, &start, &why));
     last_energy_J = -1;
@@ -138,20 +118,11 @@ static void read_start(void) {
 static void read_input(void) {
     laconic_articulated_input *in = &input.hinged;
     memset(&input, 0, sizeof input);
-    for (int i = 0; i < model.wheel_count; i++) in->base.voltage_V[i] = real_number();
-    for (int i = 0; i < model.wheel_count; i++) in->base.axle_torque_Nm[i] = real_number();
-    for (int k = 0; k < 2; k++) in->base.body_force_N[k] = real_number();
-    in->base.body_moment_Nm = real_number();
-    for (int k = 0; k < 2; k++) in->base.world_force_N[k] = real_number();
-    for (int k = 0; k < 2; k++) in->base.world_force_point_m[k] = real_number();
-    for (int b = 0; b < model.body_count; b++) in->hinge_voltage_V[b] = real_number();
-    for (int b = 0; b < model.body_count; b++) in->hinge_torque_Nm[b] = real_number();
-    for (int b = 0; b < model.body_count; b++) in->hinge_rate_rad_per_s[b] = real_number();
-    for (int b = 0; b < model.body_count; b++) input.hinge_angle_rad[b] = real_number();
-}
-
-static void print_many(const laconic_real *x, int count) {
-    for (int i = 0; i < count; i++) printf(" %.17g", (double)x[i]);
+    read_base_input(&in->base, model.wheel_count);
+    read_many(in->hinge_voltage_V, model.body_count);
+    read_many(in->hinge_torque_Nm, model.body_count);
+    read_many(in->hinge_rate_rad_per_s, model.body_count);
+    read_many(input.hinge_angle_rad, model.body_count);
 }
 
 static void print_state(void) {

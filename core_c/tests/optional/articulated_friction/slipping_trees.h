@@ -2,27 +2,13 @@
 #ifndef LACONIC_TEST_SLIPPING_TREES_H
 #define LACONIC_TEST_SLIPPING_TREES_H
 
-#include "check.h"
+#include "hinged_vehicles.h"
 #include "laconic/articulated_friction.h"
-
-#define ALONG (-PI / 2) /* axle of a wheel that rolls along +ξ */
-
-static laconic_refusal tree_why;
-
-/* Names what was refused where it should not have been. */
-#define TREE_TAKEN(call) \
-    do { \
-        char refused_text[500] = "ok"; \
-        memset(&tree_why, 0, sizeof tree_why); \
-        if ((call) != LACONIC_OK) laconic_message(&tree_why, refused_text, sizeof refused_text); \
-        TEST_ASSERT_EQUAL_STRING("ok", refused_text); \
-    } while (0)
 
 static inline laconic_tree_vehicle tree_carriage(double mass, double inertia, double mu) {
     laconic_tree_vehicle v;
     memset(&v, 0, sizeof v);
-    v.hinged.base.mass_kg = REAL(mass);
-    v.hinged.base.yaw_inertia_kgm2 = REAL(inertia);
+    v.hinged = carriage(mass, inertia, 0, 0);
     v.hinged.base.wheel_radius_m = REAL(0.08);
     v.hinged.base.ground.friction_coefficient = REAL(mu);
     return v;
@@ -30,35 +16,16 @@ static inline laconic_tree_vehicle tree_carriage(double mass, double inertia, do
 
 static inline laconic_wheel *tree_wheel(laconic_tree_vehicle *v, int body, double x, double y, double radius,
                                         double inertia, double dry) {
-    laconic_wheel *w = &v->hinged.base.wheel[v->hinged.base.wheel_count];
-    v->hinged.wheel_body[v->hinged.base.wheel_count++] = body;
-    w->kind = LACONIC_WHEEL_FIXED;
-    w->x_m = REAL(x);
-    w->y_m = REAL(y);
-    w->axle_rad = REAL(ALONG);
+    laconic_wheel *w = hang_wheel(&v->hinged, body, x, y, inertia);
     w->own_radius_m = REAL(radius);
-    w->own_inertia_kgm2 = REAL(inertia);
     w->own_axle_friction_Nm = REAL(dry);
     return w;
-}
-
-static inline void tree_drive(laconic_wheel *w, double gain, double damping) {
-    w->own_motor_gain_Nm_per_V = REAL(gain);
-    w->own_motor_damping_Nms = REAL(damping);
 }
 
 /* Returns its number, from 1. */
 static inline int tree_body(laconic_tree_vehicle *v, int parent, double x, double y, double mass, double inertia,
                             double com_x, double com_y) {
-    laconic_body *b = &v->hinged.body[v->hinged.body_count++];
-    b->parent = parent;
-    b->hinge = LACONIC_HINGE_FREE;
-    b->hinge_x_m = REAL(x);
-    b->hinge_y_m = REAL(y);
-    b->mass_kg = REAL(mass);
-    b->yaw_inertia_kgm2 = REAL(inertia);
-    b->com_x_m = REAL(com_x);
-    b->com_y_m = REAL(com_y);
+    hang_body(&v->hinged, parent, LACONIC_HINGE_FREE, x, y, mass, inertia, com_x, com_y);
     return v->hinged.body_count;
 }
 
@@ -72,7 +39,7 @@ static inline void tree_servo(laconic_tree_vehicle *v, int body, double gain, do
 /* Differential drive on two casters. */
 static inline laconic_tree_vehicle tree_casters(void) {
     laconic_tree_vehicle v = tree_carriage(20, 0.6, 0.6);
-    for (int s = 1; s >= -1; s -= 2) tree_drive(tree_wheel(&v, 0, 0.03, 0.2 * s, 0.08, 0.02, 0.05), 0.4, 0.3);
+    for (int s = 1; s >= -1; s -= 2) drive_wheel(tree_wheel(&v, 0, 0.03, 0.2 * s, 0.08, 0.02, 0.05), 0.4, 0.3);
     for (int s = 1; s >= -1; s -= 2) {
         const int b = tree_body(&v, 0, -0.25, 0.12 * s, 0.3, 2e-4, -0.015, 0);
         v.hinged.body[b - 1].damping_Nms = REAL(1e-3);
@@ -89,7 +56,7 @@ static inline laconic_tree_vehicle tree_swerve(void) {
         v.hinged.body[b - 1].damping_Nms = REAL(0.01);
         v.hinge[b - 1].dry_friction_Nm = REAL(0.05);
         tree_servo(&v, b, 60, 1.5, 3);
-        tree_drive(tree_wheel(&v, b, 0, 0, 0.05, 0.004, 0.05), 0.35, 0.25);
+        drive_wheel(tree_wheel(&v, b, 0, 0, 0.05, 0.004, 0.05), 0.35, 0.25);
     }
     return v;
 }
@@ -103,7 +70,7 @@ static inline laconic_tree_vehicle tree_ackermann(void) {
         tree_servo(&v, b, 200, 4, 8);
         tree_wheel(&v, b, -0.005, 0.03 * s, 0.1, 0.008, 0.02);
     }
-    for (int s = 1; s >= -1; s -= 2) tree_drive(tree_wheel(&v, 0, -0.35, 0.22 * s, 0.1, 0.02, 0.05), 1, 0.5);
+    for (int s = 1; s >= -1; s -= 2) drive_wheel(tree_wheel(&v, 0, -0.35, 0.22 * s, 0.1, 0.02, 0.05), 1, 0.5);
     return v;
 }
 
@@ -117,7 +84,7 @@ static inline laconic_tree_vehicle tree_loader(void) {
     h->stop_high_rad = REAL(0.7);
     tree_servo(&v, b, 4e4, 6e3, 2500);
     for (int k = 0; k < 4; k++)
-        tree_drive(tree_wheel(&v, k / 2 == 0 ? 0 : b, k < 2 ? 0 : -1, k % 2 == 0 ? 0.6 : -0.6, 0.4, 4, 10), 20, 120);
+        drive_wheel(tree_wheel(&v, k / 2 == 0 ? 0 : b, k < 2 ? 0 : -1, k % 2 == 0 ? 0.6 : -0.6, 0.4, 4, 10), 20, 120);
     return v;
 }
 
@@ -138,15 +105,15 @@ static inline laconic_tree_vehicle tree_trailer(double mu) {
 static inline laconic_tree_vehicle tree_rigid(void) {
     laconic_tree_vehicle v = tree_carriage(36, 2.2, 0.8);
     for (int k = 0; k < 4; k++)
-        tree_drive(tree_wheel(&v, 0, k == 0 || k == 3 ? 0.25 : -0.25, k < 2 ? 0.25 : -0.25, 0.05, 0.004, 0.05), 0.35,
-                   0.25);
+        drive_wheel(tree_wheel(&v, 0, k == 0 || k == 3 ? 0.25 : -0.25, k < 2 ? 0.25 : -0.25, 0.05, 0.004, 0.05), 0.35,
+                    0.25);
     return v;
 }
 
 static inline laconic_tree_model tree_model(laconic_tree_vehicle v) {
     laconic_tree_model m;
     memset(&m, 0, sizeof m);
-    TREE_TAKEN(laconic_tree_prepare(&m, &v, &tree_why));
+    ASSERT_TAKEN(laconic_tree_prepare(&m, &v, &refusal));
     return m;
 }
 
@@ -159,22 +126,20 @@ static inline laconic_tree_input tree_nothing(void) {
 static inline laconic_tree_start tree_start_at(double vx, double vy, double yaw_rate) {
     laconic_tree_start s;
     memset(&s, 0, sizeof s);
-    s.hinged.velocity_m_per_s[0] = REAL(vx);
-    s.hinged.velocity_m_per_s[1] = REAL(vy);
-    s.hinged.yaw_rate_rad_per_s = REAL(yaw_rate);
+    s.hinged = start_at(vx, vy, yaw_rate);
     return s;
 }
 
 static inline laconic_tree_state tree_state(const laconic_tree_model *m, const laconic_tree_start *start) {
     laconic_tree_state s;
     memset(&s, 0, sizeof s);
-    TREE_TAKEN(laconic_tree_state_set(&s, m, start, &tree_why));
+    ASSERT_TAKEN(laconic_tree_state_set(&s, m, start, &refusal));
     return s;
 }
 
 static inline void tree_run(const laconic_tree_model *m, laconic_tree_state *s, const laconic_tree_input *in,
                             double step, int steps) {
-    for (int k = 0; k < steps; k++) TREE_TAKEN(laconic_tree_step(m, REAL(step), s, in, &tree_why));
+    for (int k = 0; k < steps; k++) ASSERT_TAKEN(laconic_tree_step(m, REAL(step), s, in, &refusal));
 }
 
 static inline laconic_tree_outputs tree_outputs(const laconic_tree_model *m, const laconic_tree_state *s) {

@@ -10,12 +10,12 @@ static void assert_prepare_refuses(laconic_tree_vehicle v, laconic_status status
     char text[500];
     memset(&m, 7, sizeof m);
     const laconic_tree_model before = m;
-    ASSERT_STATUS(status, laconic_tree_prepare(&m, &v, &tree_why));
-    ASSERT_STATUS(status, tree_why.status);
-    TEST_ASSERT_EQUAL(field, tree_why.field);
-    TEST_ASSERT_EQUAL(item, tree_why.item);
+    ASSERT_STATUS(status, laconic_tree_prepare(&m, &v, &refusal));
+    ASSERT_STATUS(status, refusal.status);
+    TEST_ASSERT_EQUAL(field, refusal.field);
+    TEST_ASSERT_EQUAL(item, refusal.item);
     TEST_ASSERT_EQUAL_MEMORY(&before, &m, sizeof m);
-    laconic_message(&tree_why, text, sizeof text);
+    laconic_message(&refusal, text, sizeof text);
     TEST_ASSERT_EQUAL_STRING_LEN(start_of_text, text, strlen(start_of_text));
 }
 
@@ -106,15 +106,15 @@ static void a_start_beyond_a_stop_is_refused(void) {
     laconic_tree_start start = tree_start_at(0, 0, 0);
     laconic_tree_state s;
     start.hinged.hinge_angle_rad[0] = REAL(0.8);
-    ASSERT_STATUS(LACONIC_ABOVE_LIMIT, laconic_tree_state_set(&s, &m, &start, &tree_why));
-    TEST_ASSERT_EQUAL(FIELD(START_HINGE_ANGLE), tree_why.field);
+    ASSERT_STATUS(LACONIC_ABOVE_LIMIT, laconic_tree_state_set(&s, &m, &start, &refusal));
+    TEST_ASSERT_EQUAL(FIELD(START_HINGE_ANGLE), refusal.field);
     start.hinged.hinge_angle_rad[0] = REAL(-0.8);
-    ASSERT_STATUS(LACONIC_BELOW_LIMIT, laconic_tree_state_set(&s, &m, &start, &tree_why));
+    ASSERT_STATUS(LACONIC_BELOW_LIMIT, laconic_tree_state_set(&s, &m, &start, &refusal));
     start.hinged.hinge_angle_rad[0] = 0;
     start.hinged.velocity_m_per_s[1] = INFINITE;
-    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_state_set(&s, &m, &start, &tree_why));
-    TEST_ASSERT_EQUAL(FIELD(START_VELOCITY), tree_why.field);
-    TEST_ASSERT_EQUAL(2, tree_why.item);
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_state_set(&s, &m, &start, &refusal));
+    TEST_ASSERT_EQUAL(FIELD(START_VELOCITY), refusal.field);
+    TEST_ASSERT_EQUAL(2, refusal.item);
 }
 
 /* ----------------------------------------------------------------------------------------- loads -- */
@@ -213,18 +213,18 @@ static void without_hinges_it_is_the_friction_step_of_rigid_vehicles(void) {
     memset(&rigid, 0, sizeof rigid);
     memset(&plant, 0, sizeof plant);
     laconic_model of_body; /* ν of these velocities */
-    TREE_TAKEN(laconic_prepare(&of_body, &v.hinged.base, &tree_why));
+    ASSERT_TAKEN(laconic_prepare(&of_body, &v.hinged.base, &refusal));
     rigid.nu_rad_per_s[0] = REAL(0.6 / 0.08);
     rigid.nu_rad_per_s[1] = REAL(-0.2 / 0.08);
     rigid.nu_rad_per_s[2] = REAL(0.5) * of_body.yaw_scale;
-    TREE_TAKEN(laconic_plant_start(&plant, &v.hinged.base, &laconic_auto, REAL(0.001), &rigid, &tree_why));
+    ASSERT_TAKEN(laconic_plant_start(&plant, &v.hinged.base, &laconic_auto, REAL(0.001), &rigid, &refusal));
     laconic_tree_state s = tree_state(&m, &start);
     for (int i = 0; i < 4; i++) in.hinged.base.voltage_V[i] = REAL(i < 3 ? 12 : -3);
     in.hinged.base.body_force_N[1] = 5;
     tree_run(&m, &s, &in, 0.001, 400);
     for (int k = 0; k < 400; k++)
-        TREE_TAKEN(laconic_friction_step(&plant.friction, &plant.model, REAL(0.001), &plant.state, &plant.slip,
-                                         &in.hinged.base));
+        ASSERT_TAKEN(laconic_friction_step(&plant.friction, &plant.model, REAL(0.001), &plant.state, &plant.slip,
+                                           &in.hinged.base));
     for (int i = 0; i < 4; i++) {
         ASSERT_NEAR(EITHER(1e-8, 0.02), plant.slip.wheel_speed_rad_per_s[i], s.wheel_speed_rad_per_s[i]);
         ASSERT_NEAR(EITHER(1e-6, 0.2), plant.slip.normal_N[i], s.normal_N[i]);

@@ -1,8 +1,6 @@
 /* Tests of the step of a tree: hinges, drives, scrub, energy, rest, refusals. */
 #include "slipping_trees.h"
 
-static double largest(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }
-
 /* ------------------------------------------------------------------------------------------- hinges -- */
 
 static void a_prescribed_hinge_turns_as_commanded_with_or_without_mass(void) {
@@ -78,9 +76,9 @@ static void a_sampled_servo_looks_at_its_own_rate(void) {
         torque = now;
     }
     TEST_ASSERT_EQUAL(5, changes);
-    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_tree_step(&m, REAL(0.0030001), &s, &in, &tree_why));
-    TEST_ASSERT_EQUAL((laconic_field)LACONIC_FIELD_OF_CONTROL_PERIOD, tree_why.field);
-    TEST_ASSERT_EQUAL(1, tree_why.item);
+    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_tree_step(&m, REAL(0.0030001), &s, &in, &refusal));
+    TEST_ASSERT_EQUAL((laconic_field)LACONIC_FIELD_OF_CONTROL_PERIOD, refusal.field);
+    TEST_ASSERT_EQUAL(1, refusal.item);
 }
 
 /* ------------------------------------------------------------------------------------------- drives -- */
@@ -279,18 +277,18 @@ static void numbers_that_are_not_finite_are_refused_by_name(void) {
     const laconic_tree_state before = s;
     laconic_tree_input in = tree_nothing();
     in.hinge_angle_rad[2] = NOT_A_NUMBER;
-    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_step(&m, REAL(0.001), &s, &in, &tree_why));
-    TEST_ASSERT_EQUAL((laconic_field)LACONIC_FIELD_OF_HINGE_ANGLE, tree_why.field);
-    TEST_ASSERT_EQUAL(3, tree_why.item);
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_step(&m, REAL(0.001), &s, &in, &refusal));
+    TEST_ASSERT_EQUAL((laconic_field)LACONIC_FIELD_OF_HINGE_ANGLE, refusal.field);
+    TEST_ASSERT_EQUAL(3, refusal.item);
     in = tree_nothing();
     in.hinged.base.voltage_V[1] = INFINITE;
-    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_step(&m, REAL(0.001), &s, &in, &tree_why));
-    TEST_ASSERT_EQUAL(LACONIC_FIELD_VOLTAGE, tree_why.field);
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_step(&m, REAL(0.001), &s, &in, &refusal));
+    TEST_ASSERT_EQUAL(LACONIC_FIELD_VOLTAGE, refusal.field);
     in = tree_nothing();
-    ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_tree_step(&m, 0, &s, &in, &tree_why));
+    ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_tree_step(&m, 0, &s, &in, &refusal));
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_step(&m, NOT_A_NUMBER, &s, &in, NULL));
     in.hinged.base.body_force_N[0] = REAL(LACONIC_REAL_MAX);
-    TEST_ASSERT_TRUE(laconic_tree_step(&m, REAL(0.001), &s, &in, &tree_why) != LACONIC_OK);
+    TEST_ASSERT_TRUE(laconic_tree_step(&m, REAL(0.001), &s, &in, &refusal) != LACONIC_OK);
     TEST_ASSERT_EQUAL_MEMORY(&before, &s, sizeof s);
 }
 
@@ -332,7 +330,7 @@ static void the_same_step_gives_the_same_bits(void) {
     laconic_tree_state copy = b;
     tree_run(&m, &copy, &in, 0.001, 25);
     TEST_ASSERT_EQUAL_MEMORY(&a, &copy, sizeof a);
-    TEST_ASSERT_TRUE(largest((double)a.z[0], 0) > 0);
+    TEST_ASSERT_TRUE(fabs((double)a.z[0]) > 0);
 }
 
 int main(void) {
