@@ -91,8 +91,9 @@ def test_every_function_that_a_program_begins_with_is_checked(call, libraries):
 HINGED = {
     "prepare": "static laconic_articulated_model m; static laconic_articulated_vehicle v;"
                "return (int)laconic_articulated_prepare(&m, &v, NULL);",
-    "state": "static laconic_articulated_model m; static laconic_articulated_state q; laconic_articulated_start s = {0};"
-             "static laconic_articulated_input u; return (int)laconic_articulated_state_set(&q, NULL, &m, &s, &u, NULL);",
+    "state": "static laconic_articulated_model m; static laconic_articulated_state q; "
+             "static laconic_articulated_start s; static laconic_articulated_input u; "
+             "return (int)laconic_articulated_state_set(&q, NULL, &m, &s, &u, NULL);",
     "integrator": "static laconic_articulated_model m; static laconic_articulated_integrator i;"
                   "return (int)laconic_articulated_integrator_prepare(&i, 0, &m, (laconic_real)0.01, NULL);"}
 
