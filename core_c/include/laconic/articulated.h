@@ -397,8 +397,25 @@ laconic_status laconic_articulated_reactions_of(laconic_articulated_reactions *r
                                                 const laconic_articulated_input *input, const laconic_real *normal_N,
                                                 laconic_refusal *why);
 
+/* A program with another number of bodies than the library, or with other definitions of build.h, does not link. */
+#define LACONIC_BUILT_BODIES LACONIC_JOINED(laconic_built_with_LACONIC_MAX_BODIES_, LACONIC_MAX_BODIES)
+void LACONIC_BUILT_BODIES(void);
+
 #ifdef __cplusplus
 }
 #endif
+
+#ifndef LACONIC_IN_CORE /* build.h */
+static inline void laconic_check_bodies(void) {
+    laconic_check_build();
+    LACONIC_BUILT_BODIES();
+}
+
+#define laconic_articulated_prepare(...) (laconic_check_bodies(), laconic_articulated_prepare(__VA_ARGS__))
+#define laconic_articulated_integrator_prepare(...) \
+    (laconic_check_bodies(), laconic_articulated_integrator_prepare(__VA_ARGS__))
+#define laconic_articulated_state_set(...) (laconic_check_bodies(), laconic_articulated_state_set(__VA_ARGS__))
+#endif
+
 #endif
 #endif

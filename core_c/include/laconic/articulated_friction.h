@@ -283,5 +283,11 @@ void laconic_tree_outputs_of(laconic_tree_outputs *outputs, const laconic_tree_m
 #ifdef __cplusplus
 }
 #endif
+
+#ifndef LACONIC_IN_CORE /* build.h */
+#define laconic_tree_prepare(...) (laconic_check_bodies(), laconic_tree_prepare(__VA_ARGS__))
+#define laconic_tree_state_set(...) (laconic_check_bodies(), laconic_tree_state_set(__VA_ARGS__))
+#endif
+
 #endif
 #endif

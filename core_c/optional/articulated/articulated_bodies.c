@@ -44,7 +44,7 @@ void laconic_articulated_wheels(laconic_articulated_model *m, const laconic_arti
     }
 }
 
-static void add_square(laconic_form *f, real factor, vector v) {
+static void add_outer_square(laconic_form *f, real factor, vector v) {
     f->xx += factor * v.x * v.x;
     f->xy += factor * v.x * v.y;
     f->yy += factor * v.y * v.y;
@@ -54,8 +54,8 @@ static void add_square(laconic_form *f, real factor, vector v) {
 }
 
 void laconic_articulated_add_wheel(laconic_form *inertia, laconic_form *drag, const laconic_articulated_wheel *wheel) {
-    add_square(inertia, wheel->inertia_kgm2, wheel->roll);
-    add_square(drag, wheel->damping_Nms, wheel->roll);
+    add_outer_square(inertia, wheel->inertia_kgm2, wheel->roll);
+    add_outer_square(drag, wheel->damping_Nms, wheel->roll);
 }
 
 /* ---------------------------------------------------------------------------- rows of one body -- */

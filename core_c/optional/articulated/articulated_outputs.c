@@ -39,8 +39,8 @@ static real kinetic_energy(const laconic_articulated_model *m, const articulated
     return R(0.5) * twice;
 }
 
-static vector travel_of(const laconic_articulated_state *state, int32_t body) {
-    const laconic_sum *t = state->travel[body];
+static vector travel_of(const laconic_articulated_state *state, int32_t number) {
+    const laconic_sum *t = state->travel[number];
     return vector_of(t[0].value + t[0].rest, t[1].value + t[1].rest, t[2].value + t[2].rest);
 }
 

@@ -141,6 +141,8 @@ static void count_velocities(laconic_articulated_model *m) {
     m->dof = m->carriage_dof + m->own_count;
 }
 
+void LACONIC_BUILT_BODIES(void) {}
+
 laconic_status laconic_articulated_prepare(laconic_articulated_model *model, const laconic_articulated_vehicle *vehicle,
                                            laconic_refusal *why) {
     laconic_articulated_model m = ALL_ZERO;

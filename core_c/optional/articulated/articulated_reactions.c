@@ -144,11 +144,11 @@ static void hold_by_body(holding_rows *h, const laconic_articulated_model *m, in
 
 /* Shares a wrench among rows by least norm; returns what they do not deliver. */
 static vector share_among(laconic_articulated_reactions *out, const laconic_articulated_model *m, const holding_rows *h,
-                          vector wrench) {
+                          vector needed) {
     real solver[MAX_HOLDING][3];
-    vector rest = vector_of(wrench.x, wrench.y, wrench.z / m->length_m);
+    vector rest = vector_of(needed.x, needed.y, needed.z / m->length_m);
     const vector wanted = rest;
-    if (h->count == 0) return wrench;
+    if (h->count == 0) return needed;
     laconic_least_norm(solver, (const real(*)[3])h->row, h->count);
     for (int32_t k = 0; k < h->count; k++) {
         const real force = dot(vec(solver[k]), wanted);

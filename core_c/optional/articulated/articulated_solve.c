@@ -121,13 +121,13 @@ static laconic_status refuse_rows(const laconic_articulated_model *m, const kept
 
 /* The mass of ζ is at least 1: its pivots are lost only where bodies are too far apart in mass. */
 static laconic_status refuse_massless(const laconic_articulated_model *m, int32_t velocity, laconic_refusal *why) {
-    int32_t body = 0;
+    int32_t massless = 0;
     if (velocity < m->carriage_dof)
         return refuse(why, LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, R(1) / SMALLEST_PIVOT, R(0));
     for (int32_t b = 1; b <= m->body_count; b++)
         if (m->link[b - 1].motion == LACONIC_MOTION_OWN && m->carriage_dof + m->link[b - 1].column == velocity)
-            body = b;
-    return refuse(why, LACONIC_MASSLESS_HINGE, (laconic_field)LACONIC_FIELD_OF_BODY_YAW_INERTIA, body, R(0), R(0));
+            massless = b;
+    return refuse(why, LACONIC_MASSLESS_HINGE, (laconic_field)LACONIC_FIELD_OF_BODY_YAW_INERTIA, massless, R(0), R(0));
 }
 
 /* Factors the mass, keeps the rows that count and moves y onto them. */

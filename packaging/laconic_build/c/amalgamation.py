@@ -1,4 +1,5 @@
 """The core as two files: laconic.h is every public header, laconic.c every source file, each after what it includes.
+Of the optional parts they have those of OPTIONAL.
 
 The files are compiled as one, so names that a source file keeps for itself must differ between files; its macros end
 with it. A second pair has the prefix laconic_single_ and is always float, so that one program can hold both.
@@ -14,6 +15,8 @@ from laconic_build.c.facts import CORE, Facts
 
 INCLUDE = re.compile(r'^#include (?:<(?P<system>\w+\.h)>|"(?:laconic/)?(?P<own>\w+\.h)").*\n', re.MULTILINE)
 MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
+OPTIONAL = {"articulated": "articulated.h"}
+"""Folders of core_c/optional that are in the files, and their public headers."""
 CHECKED = re.compile(r"^#define (laconic_\w+)\(", re.MULTILINE)
 
 HEADER_HEAD = """\
@@ -117,13 +120,15 @@ def unusual_definitions(prefix: str) -> list[str]:
 
 def public_headers() -> str:
     headers = {path.name: path for path in (CORE / "include" / "laconic").glob("*.h")}
-    return flat(headers["laconic.h"], headers, set(), set())
+    seen, system = set[str](), set[str]()
+    return "".join(flat(headers[name], headers, seen, system) for name in ("laconic.h", *OPTIONAL.values()))
 
 
 def all_sources() -> str:
     public = (CORE / "include" / "laconic").glob("*.h")  # fields.c includes one that laconic.h does not
-    sources = {path.name: path for path in (*public, *sorted((CORE / "src").rglob("*.[ch]")))}
-    seen, system = {"laconic.h"}, set[str]()
+    own = [CORE / "src", *(CORE / "optional" / folder for folder in OPTIONAL)]
+    sources = {path.name: path for path in (*public, *sorted(each for root in own for each in root.rglob("*.[ch]")))}
+    seen, system = {"laconic.h", *OPTIONAL.values()}, set[str]()
     parts = [part_of(sources[name], sources, seen, system) for name in sorted(sources) if name.endswith(".c")]
     shared = sorted({name for path in sources.values() if path.suffix == ".h" for name in macros(path)})
     return "".join(parts) + banner("end") + undefined(shared)

@@ -9,38 +9,75 @@ import json
 import re
 import shutil
 import tarfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from laconic.core.articulated import method_names
+from laconic.scene.keys import HINGE_KEYS, NOT_NEGATIVE, NOT_ZERO, POSITIVE, Key
 from laconic.scene.methods import METHODS
+from laconic.scene.table import REQUIRED
 
 NPM_TIME = 499162500  # 1985-10-26, which npm, too, gives every file, so that archives do not differ by their times
 
 
-def make_package(sources: Path, wasm: Path, version: str, out: Path, archive: Path) -> None:
+RULES = {POSITIVE: "POSITIVE", NOT_NEGATIVE: "NOT_NEGATIVE", NOT_ZERO: "NOT_ZERO"}
+"""The rules of keys by the names that hinge_tables.js has for them."""
+
+
+def make_package(sources: Path, wasm: Path, hinged_wasm: Path, version: str, out: Path, archive: Path) -> None:
     """Fills the folder `out` and packs it."""
     shutil.rmtree(out, ignore_errors=True)
     (out / "src").mkdir(parents=True)
     for path in sorted((sources / "src").iterdir()):
         shutil.copyfile(path, out / "src" / path.name)
-    types = out / "src/index.d.ts"
-    types.write_text(with_names(types.read_text(encoding="utf-8")), encoding="utf-8")
-    text = base64.b64encode(wasm.read_bytes()).decode("ascii")
-    module = f'// The core, compiled to WebAssembly, as base64.\nexport const wasm =\n  "{text}";\n'
-    (out / "src/wasm.js").write_text(module, encoding="ascii")
+    for name, methods in (("index", METHODS), ("hinges", method_names())):
+        types = out / f"src/{name}.d.ts"
+        types.write_text(with_names(types.read_text(encoding="utf-8"), methods, types.name), encoding="utf-8")
+    (out / "src/wasm.js").write_text(module_of("The core", wasm), encoding="ascii")
+    (out / "src/hinged_wasm.js").write_text(module_of("The core's part for hinges", hinged_wasm), encoding="ascii")
+    (out / "src/hinge_keys.js").write_text(keys_of_hinges(), encoding="utf-8")
     (out / "package.json").write_text(json.dumps(manifest_of(sources, version), indent=2) + "\n", encoding="utf-8")
     shutil.copyfile(sources / "README.md", out / "README.md")
     shutil.copyfile(sources.parents[1] / "LICENSE", out / "LICENSE")
     archive.write_bytes(packed(out))
 
 
-def with_names(types: str) -> str:
+def module_of(what: str, wasm: Path) -> str:
+    text = base64.b64encode(wasm.read_bytes()).decode("ascii")
+    return f'// {what}, compiled to WebAssembly, as base64.\nexport const wasm =\n  "{text}";\n'
+
+
+def with_names(types: str, methods: Sequence[str], file: str) -> str:
     """The types, which take no method but the core's."""
-    names = " | ".join(f'"{name}"' for name in METHODS)
+    names = " | ".join(f'"{name}"' for name in methods)
     text, count = re.subn(r"(export type MethodName = )string;", rf"\1{names};", types)
     if count != 1:
-        raise ValueError(f"index.d.ts: `export type MethodName = string;` occurs {count} times, not once")
+        raise ValueError(f"{file}: `export type MethodName = string;` occurs {count} times, not once")
     return text
+
+
+def keys_of_hinges() -> str:
+    """The keys of bodies on hinges, as the command reads them: table → key → what it may be."""
+    tables: dict[str, dict[str, Any]] = {}
+    for key in HINGE_KEYS:
+        table, _, name = key.path.rpartition(".")
+        tables.setdefault(table, {})[name] = traits_of(key)
+    text = json.dumps(tables, indent=2)
+    return ("// Made of the command's list of keys (python/laconic/scene/keys.py).\n"
+            f"/** @type {{Record<string, Record<string, any>>}} */\nexport const HINGE_KEYS = {text};\n")
+
+
+def traits_of(key: Key) -> dict[str, Any]:
+    """One key; `default` is absent where it must be given."""
+    found: dict[str, Any] = {"kind": key.kind}
+    if key.default is not REQUIRED:
+        found["default"] = key.default
+    if key.choices is not None:
+        found["choices"] = list(key.choices)
+    if key.rule is not None:
+        found["rule"] = RULES[key.rule]
+    return found
 
 
 def manifest_of(sources: Path, version: str) -> dict[str, Any]:

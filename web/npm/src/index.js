@@ -3,7 +3,8 @@ import { askKeys } from "./checks.js";
 import { Module } from "./module.js";
 import { Refused } from "./refused.js";
 import { Robot } from "./robot.js";
-import { runOf } from "./scene.js";
+import { hingesIn, runOf } from "./scene.js";
+import { wasm } from "./wasm.js";
 
 export { Refused, Robot };
 
@@ -23,7 +24,14 @@ export class Laconic {
 
   /** @param {any} scene @param {{method?: string, step_s?: number}} [run] */
   robot(scene, run = {}) {
-    const ofScene = runOf(scene);
+    const ofScene = runOf(scene),
+      hinged = hingesIn(scene.vehicle);
+    if (hinged)
+      throw new Refused(
+        hinged,
+        'bodies on hinges are for robot() of what load() of "laconic-robots/hinges" gives; take that one',
+        "unknown key",
+      );
     askKeys("run", run, ["method", "step_s"]);
     const { method = ofScene.method ?? "auto", step_s = ofScene.step_s ?? 0.001 } = run;
     return new Robot(this.module, scene, method, step_s);
@@ -44,5 +52,5 @@ export class Laconic {
 
 /** Loads the core; every call makes one of its own. */
 export async function load() {
-  return new Laconic(await Module.load());
+  return new Laconic(await Module.load(wasm));
 }

@@ -1,6 +1,4 @@
 // The WebAssembly module, and what it says of itself: fields, methods, outputs.
-import { wasm } from "./wasm.js";
-
 const decoder = new TextDecoder();
 
 /** @param {string} text @returns {Uint8Array<ArrayBuffer>} */
@@ -22,7 +20,8 @@ export class Module {
     this.methods = this.listMethods();
   }
 
-  static async load() {
+  /** @param {string} wasm base64 */
+  static async load(wasm) {
     const { instance, module } = await WebAssembly.instantiate(bytesOf(wasm));
     return new Module(instance.exports, module);
   }

@@ -38,6 +38,20 @@ export function runOf(scene) {
   return scene.run;
 }
 
+const FORMS_OF_HINGES = ["caster", "trailer", "body"];
+
+/** The path of the first table of a vehicle that has a body on a hinge; "" where there is none. */
+export function hingesIn(/** @type {any} */ vehicle) {
+  if (typeof vehicle !== "object" || vehicle === null) return "";
+  const wheels = Array.isArray(vehicle.wheel) ? vehicle.wheel : [];
+  const at = wheels.findIndex(
+    (/** @type {any} */ each) => typeof each === "object" && each !== null && ("steered" in each || "body" in each),
+  );
+  if (at >= 0) return `vehicle.wheel[${at + 1}].${"steered" in wheels[at] ? "steered" : "body"}`;
+  const form = FORMS_OF_HINGES.find((each) => Array.isArray(vehicle[each]) && vehicle[each].length > 0);
+  return form ? `vehicle.${form}` : "";
+}
+
 /** Sets all numbers of a scene in a robot. */
 export class SceneSetter {
   /** @param {import("./module.js").Module} module @param {number} robot */
@@ -206,7 +220,7 @@ function circuitOf(/** @type {string} */ path, /** @type {any} */ given) {
 }
 
 /** Angles in degrees, by the suffix _deg, become radians. @param {string} path @param {any} given */
-function inRad(path, given) {
+export function inRad(path, given) {
   /** @type {Record<string, any>} */
   const found = {};
   for (const [key, value] of Object.entries(askTable(path, given))) {
@@ -223,7 +237,7 @@ function inRad(path, given) {
  * distance_m and bearing_rad become x_m and y_m.
  * @param {string} path @param {any} given @returns {Record<string, any>}
  */
-function inPlace(path, { distance_m, bearing_rad, ...rest }) {
+export function inPlace(path, { distance_m, bearing_rad, ...rest }) {
   if (distance_m === undefined && bearing_rad === undefined) return rest;
   for (const key of ["x_m", "y_m"])
     if (key in rest)

@@ -1,4 +1,4 @@
-/* A number of a robot by its field and item: the table follows from the list of vehicle.h. */
+/* A number of a robot by its field and item: the table follows from the lists of vehicle.h and articulated.h. */
 #include "web.h"
 
 typedef struct place {
@@ -24,16 +24,30 @@ typedef struct place {
 #define PLACE_INPUT_ARRAY(member) IN_ROBOT(input.member), REALS_IN(input.member)
 #define PLACE_INPUT(member) IN_ROBOT(input.member), 0, 0
 #define PLACE_MOTOR(member) IN_ROBOT(motor.member), 0, 0
+#ifdef LACONIC_WEB_HINGES
+#define PLACE_BODY(member) IN_ROBOT(hinged.body[0].member), sizeof(laconic_body), LACONIC_MAX_BODIES
+#define PLACE_WHEEL_OF_BODY(member) IN_ROBOT(hinged.wheel_##member[0]), sizeof(int32_t), LACONIC_MAX_WHEELS
+#define PLACE_BODY_COUNT(member) IN_ROBOT(hinged.member##_count), 0, 0
+#define PLACE_HINGE(member) IN_ROBOT(hinged_input.member), REALS_IN(hinged_input.member)
+#define PLACE_HINGE_START(member) IN_ROBOT(hinged_start.member), REALS_IN(hinged_start.member)
+#define OF_HINGES(X) \
+    LACONIC_BODY_FIELDS(X, BODY) \
+    LACONIC_WHEEL_BODY_FIELD(X, WHEEL_OF_BODY) \
+    LACONIC_BODY_COUNT_FIELD(X, BODY_COUNT) \
+    LACONIC_HINGE_INPUT_FIELDS(X, HINGE) LACONIC_HINGE_START_FIELDS(X, HINGE_START)
+#else
+#define OF_HINGES(X)
+#endif
 #define PLACE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     [number] = {true, PLACE_##of(member), LACONIC_KIND_##KIND},
 
-static const place places[LACONIC_FIELD_COUNT] = {
+static const place places[LACONIC_WEB_FIELD_COUNT] = {
     LACONIC_VEHICLE_FIELDS(PLACE, VEHICLE) LACONIC_PAYLOAD_FIELDS(PLACE, PAYLOAD) LACONIC_GROUND_FIELDS(PLACE, GROUND)
         LACONIC_DRIVE_FIELDS(PLACE, DRIVE) LACONIC_WHEEL_COUNT_FIELD(PLACE, COUNT) LACONIC_WHEEL_FIELDS(PLACE, WHEEL)
             LACONIC_OWN_WHEEL_FIELDS(PLACE, OWN) LACONIC_SUPPORT_COUNT_FIELD(PLACE, COUNT)
                 LACONIC_SUPPORT_FIELDS(PLACE, SUPPORT) LACONIC_START_ARRAY_FIELDS(PLACE, START_ARRAY)
                     LACONIC_START_FIELDS(PLACE, START) LACONIC_INPUT_ARRAY_FIELDS(PLACE, INPUT_ARRAY)
-                        LACONIC_INPUT_FIELDS(PLACE, INPUT) LACONIC_MOTOR_FIELDS(PLACE, MOTOR)};
+                        LACONIC_INPUT_FIELDS(PLACE, INPUT) LACONIC_MOTOR_FIELDS(PLACE, MOTOR) OF_HINGES(PLACE)};
 
 static unsigned char *byte_of(laconic_web_robot *robot, const place *of, int32_t item) {
     const bool is_there = of->items == 0 ? item == 0 : item >= 1 && item <= of->items;
@@ -59,7 +73,7 @@ static void note_own_zero(laconic_web_robot *robot, int32_t field, int32_t item,
 /* item: from 1, or 0 for a field without items. Returns whether the robot has such a number. Flags: 0 or 1; of
  * what is told by its absence 1 means that it is absent. */
 WEB_EXPORT(laconic_web_set) bool laconic_web_set(laconic_web_robot *robot, int32_t field, int32_t item, double value) {
-    const bool is_field = field > 0 && field < LACONIC_FIELD_COUNT && places[field].is_field;
+    const bool is_field = field > 0 && field < LACONIC_WEB_FIELD_COUNT && places[field].is_field;
     unsigned char *target = is_field ? byte_of(robot, &places[field], item) : NULL;
     if (target == NULL) return false;
     switch (places[field].kind) {

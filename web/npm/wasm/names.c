@@ -17,8 +17,22 @@ WEB_EXPORT(laconic_web_field_need) int32_t laconic_web_field_need(int32_t field)
     return traits != NULL ? (int32_t)traits->need : -1;
 }
 
-WEB_EXPORT(laconic_web_field_count) int32_t laconic_web_field_count(void) { return LACONIC_FIELD_COUNT; }
+WEB_EXPORT(laconic_web_field_count) int32_t laconic_web_field_count(void) { return LACONIC_WEB_FIELD_COUNT; }
 
+#ifdef LACONIC_WEB_HINGES
+/* NULL beyond the last. */
+WEB_EXPORT(laconic_web_method_name) const char *laconic_web_method_name(int32_t number) {
+    return number < LACONIC_ARTICULATED_METHOD_COUNT ? laconic_articulated_method_name(number) : NULL;
+}
+
+/* Of all of them: articulated.h. */
+WEB_EXPORT(laconic_web_method_order) int32_t laconic_web_method_order(int32_t number) {
+    (void)number;
+    return 4;
+}
+
+WEB_EXPORT(laconic_web_max_bodies) int32_t laconic_web_max_bodies(void) { return LACONIC_MAX_BODIES; }
+#else
 /* NULL beyond the last. */
 WEB_EXPORT(laconic_web_method_name) const char *laconic_web_method_name(int32_t number) {
     const laconic_method *method = laconic_method_by_number(number);
@@ -29,6 +43,7 @@ WEB_EXPORT(laconic_web_method_order) int32_t laconic_web_method_order(int32_t nu
     const laconic_method *method = laconic_method_by_number(number);
     return method != NULL ? method->order : 0;
 }
+#endif
 
 WEB_EXPORT(laconic_web_version) const char *laconic_web_version(void) { return LACONIC_VERSION; }
 

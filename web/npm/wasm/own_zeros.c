@@ -46,3 +46,14 @@ void laconic_web_own_zeros(laconic_vehicle *vehicle, const laconic_web_robot *ro
     for (size_t k = 0; k < sizeof own_values / sizeof own_values[0]; k++)
         if (own_values[k].is_inertia == inertias) let_hold(vehicle, robot, &own_values[k], wheels);
 }
+
+laconic_status laconic_web_vehicle(laconic_vehicle *vehicle, const laconic_web_robot *robot, laconic_refusal *why) {
+    *vehicle = robot->vehicle;
+    laconic_web_own_zeros(vehicle, robot, true);
+    if (robot->has_motor) {
+        const laconic_status status = laconic_motor_fit(vehicle, &robot->motor, why);
+        if (status != LACONIC_OK) return status;
+    }
+    laconic_web_own_zeros(vehicle, robot, false);
+    return LACONIC_OK;
+}

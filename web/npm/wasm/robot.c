@@ -1,22 +1,6 @@
 /* A robot from its numbers to its outputs. */
 #include "web.h"
 
-static laconic_status refuse(laconic_web_robot *robot) {
-    laconic_message(&robot->why, robot->text, sizeof robot->text);
-    return robot->why.status;
-}
-
-laconic_status laconic_web_vehicle(laconic_vehicle *vehicle, const laconic_web_robot *robot, laconic_refusal *why) {
-    *vehicle = robot->vehicle;
-    laconic_web_own_zeros(vehicle, robot, true);
-    if (robot->has_motor) {
-        const laconic_status status = laconic_motor_fit(vehicle, &robot->motor, why);
-        if (status != LACONIC_OK) return status;
-    }
-    laconic_web_own_zeros(vehicle, robot, false);
-    return LACONIC_OK;
-}
-
 /* The same robot on ideal ground; rolls is false where it cannot be prepared, as with skid steering. */
 static void prepare_rolling(laconic_web_robot *robot) {
     static laconic_vehicle ideal;
@@ -41,7 +25,7 @@ WEB_EXPORT(laconic_web_start) int32_t laconic_web_start(laconic_web_robot *robot
     if (status == LACONIC_OK)
         status = laconic_plant_start(&robot->plant, &vehicle, laconic_method_by_number(method), step_s, &robot->start,
                                      &robot->why);
-    if (status != LACONIC_OK) return (int32_t)refuse(robot);
+    if (status != LACONIC_OK) return (int32_t)laconic_web_refuse(robot);
     robot->contact = contact;
     prepare_rolling(robot);
     return LACONIC_OK;
@@ -54,7 +38,7 @@ int32_t laconic_web_start_velocity(laconic_web_robot *robot, double forward, dou
     static laconic_model model;
     laconic_status status = laconic_web_vehicle(&vehicle, robot, &robot->why);
     if (status == LACONIC_OK) status = laconic_prepare(&model, &vehicle, &robot->why);
-    if (status != LACONIC_OK) return (int32_t)refuse(robot);
+    if (status != LACONIC_OK) return (int32_t)laconic_web_refuse(robot);
     robot->start.nu_rad_per_s[0] = forward / model.wheel_radius_m;
     robot->start.nu_rad_per_s[1] = left / model.wheel_radius_m;
     robot->start.nu_rad_per_s[2] = model.yaw_scale * turn;
@@ -64,7 +48,7 @@ int32_t laconic_web_start_velocity(laconic_web_robot *robot, double forward, dou
 /* Takes steps with the input held; returns a status. */
 WEB_EXPORT(laconic_web_run) int32_t laconic_web_run(laconic_web_robot *robot, uint32_t steps) {
     const laconic_status status = laconic_plant_run(&robot->plant, &robot->input, steps, &robot->why);
-    return (int32_t)(status == LACONIC_OK ? status : refuse(robot));
+    return (int32_t)(status == LACONIC_OK ? status : laconic_web_refuse(robot));
 }
 
 WEB_EXPORT(laconic_web_clear_input) void laconic_web_clear_input(laconic_web_robot *robot) {
@@ -93,19 +77,4 @@ WEB_EXPORT(laconic_web_motor_gain) double laconic_web_motor_gain(const laconic_w
     const laconic_wheel *w = &robot->plant.vehicle.wheel[wheel];
     if (w->undriven) return 0;
     return w->own_motor_gain_Nm_per_V != 0 ? w->own_motor_gain_Nm_per_V : robot->plant.vehicle.motor_gain_Nm_per_V;
-}
-
-/* The refusal of the last call that was refused. */
-WEB_EXPORT(laconic_web_text) const char *laconic_web_text(const laconic_web_robot *robot) { return robot->text; }
-WEB_EXPORT(laconic_web_refused_status) int32_t laconic_web_refused_status(const laconic_web_robot *robot) {
-    return (int32_t)robot->why.status;
-}
-WEB_EXPORT(laconic_web_refused_field) int32_t laconic_web_refused_field(const laconic_web_robot *robot) {
-    return (int32_t)robot->why.field;
-}
-WEB_EXPORT(laconic_web_refused_value) double laconic_web_refused_value(const laconic_web_robot *robot) {
-    return robot->why.value;
-}
-WEB_EXPORT(laconic_web_refused_limit) double laconic_web_refused_limit(const laconic_web_robot *robot) {
-    return robot->why.limit;
 }

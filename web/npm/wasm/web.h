@@ -1,4 +1,6 @@
-/* The core as JavaScript sees it: one struct a robot, numbers set by the core's own list of fields.
+/* The core as JavaScript sees it: one struct a robot, numbers set by the core's own list of fields. With
+ * LACONIC_WEB_HINGES these files make the module of vehicles with hinges (hinged.c), without it that of all others
+ * (robot.c, outputs.c, wanted.c, hash.c).
  *
  * JavaScript has no structs. It names a number of the robot by its field (vehicle.h) and item, as frames on the wire
  * do, and reads outputs by the offsets that laconic_web_output() tells. Every pointer is an offset in the module's
@@ -6,10 +8,47 @@
 #ifndef LACONIC_WEB_H
 #define LACONIC_WEB_H
 
+#ifdef LACONIC_WEB_HINGES
+#include "laconic/articulated.h"
+#else
 #include "laconic/laconic.h"
+#endif
 
 #define LACONIC_WEB_TEXT 512
 #define WEB_EXPORT(name) __attribute__((export_name(#name), used))
+
+#ifdef LACONIC_WEB_HINGES
+#define LACONIC_WEB_FIELD_COUNT LACONIC_ARTICULATED_FIELD_COUNT
+
+/* Where JavaScript finds the outputs. */
+typedef struct laconic_web_hinged_outputs {
+    laconic_articulated_motion motion;
+    laconic_articulated_reactions reactions;
+} laconic_web_hinged_outputs;
+
+/* A vehicle with hinges: what was given, and what moves. */
+typedef struct laconic_web_robot {
+    laconic_vehicle vehicle; /* as given: without the rotors that laconic_motor_fit() adds */
+    laconic_motor motor;     /* of no effect while its resistance is 0, as no motor has    */
+    bool has_motor;
+    uint32_t own_zero[LACONIC_MAX_WHEELS]; /* a bit for each own value that was given as 0: own_zeros.c */
+    laconic_start start;                   /* place and heading alone */
+    laconic_input input;                   /* of wheels and carriage  */
+    laconic_articulated_vehicle hinged;    /* bodies, and the bodies of wheels; its base is made of the vehicle */
+    laconic_articulated_start hinged_start;
+    laconic_articulated_input hinged_input; /* of hinges; its base is made of the input  */
+    laconic_articulated_input acting;       /* at the end of the last step               */
+    laconic_articulated_model model;
+    laconic_articulated_integrator integrator;
+    laconic_articulated_state state, before; /* now, and before the last run */
+    laconic_real changed_m_per_s;            /* by which the start was moved to a motion that is allowed */
+    double steps, steps_before;
+    laconic_web_hinged_outputs outputs;
+    laconic_refusal why;
+    char text[LACONIC_WEB_TEXT];
+} laconic_web_robot;
+#else
+#define LACONIC_WEB_FIELD_COUNT LACONIC_FIELD_COUNT
 
 /* A robot: what was given, and the plant made of it. */
 typedef struct laconic_web_robot {
@@ -28,6 +67,10 @@ typedef struct laconic_web_robot {
     laconic_refusal why;
     char text[LACONIC_WEB_TEXT];
 } laconic_web_robot;
+#endif
+
+/* Keeps the text of a refusal; returns its status. */
+laconic_status laconic_web_refuse(laconic_web_robot *robot);
 
 /* The vehicle as the core takes it, its motor fitted and each wheel's own zeros in force. */
 laconic_status laconic_web_vehicle(laconic_vehicle *vehicle, const laconic_web_robot *robot, laconic_refusal *why);

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from laconic.base.paths import SOURCE_DIR, built
+from laconic.core.articulated import ArticulatedVehicle
 
 LANGUAGES = {"gcc": ("c99", "c11", "c17"), "clang": ("c99", "c11", "c17"),
              "g++": ("c++11", "c++14", "c++17", "c++20"), "clang++": ("c++11", "c++14", "c++17", "c++20")}
@@ -94,6 +95,123 @@ def test_the_example_of_the_readme_prints_what_the_readme_states(pair):
     (pair / "example.c").write_text(found[0][0], encoding="utf-8")
     run(CASES[0][0], "-I.", "example.c", "laconic/laconic.c", "-o", "example", folder=pair)
     assert run("./example", folder=pair) == found[0][1]
+
+
+HINGED = """
+#include <stdio.h>
+
+#include "laconic/laconic.h"
+
+/* A carriage on two driven wheels with a caster and a trailer. */
+static void build(laconic_articulated_vehicle *v) {
+    static const double places[5][2] = {{0.0, 0.25}, {0.0, -0.25}, {-0.05, 0.0}, {-0.6, 0.2}, {-0.6, -0.2}};
+    static const int owners[5] = {0, 0, 1, 2, 2};
+    v->base.mass_kg = 20;
+    v->base.yaw_inertia_kgm2 = 1;
+    v->base.com_x_m = (laconic_real)0.1;
+    v->base.wheel_radius_m = (laconic_real)0.08;
+    v->base.wheel_inertia_kgm2 = (laconic_real)0.002;
+    v->base.motor_gain_Nm_per_V = (laconic_real)0.4;
+    v->base.motor_damping_Nms = (laconic_real)0.2;
+    v->base.wheel_count = 5;
+    for (int i = 0; i < 5; i++) {
+        v->base.wheel[i].kind = LACONIC_WHEEL_FIXED;
+        v->base.wheel[i].x_m = (laconic_real)places[i][0];
+        v->base.wheel[i].y_m = (laconic_real)places[i][1];
+        v->base.wheel[i].axle_rad = (laconic_real)-1.5707963267948966;
+        v->base.wheel[i].undriven = i > 1;
+        v->wheel_body[i] = owners[i];
+    }
+    v->body_count = 2;
+    for (int b = 0; b < 2; b++) {
+        v->body[b].hinge = LACONIC_HINGE_FREE;
+        v->body[b].hinge_x_m = (laconic_real)(b == 0 ? 0.4 : -0.2);
+        v->body[b].mass_kg = (laconic_real)(b == 0 ? 0.7 : 8.0);
+        v->body[b].com_x_m = (laconic_real)(b == 0 ? -0.04 : -0.5);
+        v->body[b].yaw_inertia_kgm2 = (laconic_real)(b == 0 ? 0.001 : 0.5);
+    }
+}
+
+static void print(const laconic_articulated_model *model, const laconic_articulated_state *state) {
+    laconic_articulated_motion m;
+    laconic_articulated_motion_of(&m, model, state);
+    printf("%a %a %a %a %a %a\\n", (double)m.x_m, (double)m.y_m, (double)m.heading_rad, (double)m.hinge_angle_rad[0],
+           (double)m.hinge_angle_rad[1], (double)m.energy_J);
+}
+
+int main(void) {
+    static laconic_articulated_vehicle vehicle;
+    static laconic_articulated_model model;
+    static laconic_articulated_integrator integrator;
+    static laconic_articulated_state state;
+    static laconic_articulated_start start;
+    static laconic_articulated_input input;
+    build(&vehicle);
+    start.hinge_angle_rad[0] = 2;
+    if (laconic_articulated_prepare(&model, &vehicle, NULL)) return 1;
+    if (laconic_articulated_integrator_prepare(&integrator, LACONIC_ARTICULATED_AUTO, &model, (laconic_real)0.01, NULL))
+        return 2;
+    if (laconic_articulated_state_set(&state, NULL, &model, &start, &input, NULL)) return 3;
+    input.base.voltage_V[0] = 3;
+    input.base.voltage_V[1] = 5;
+    for (int step = 0; step < 500; step++)
+        if (laconic_articulated_step(&model, &integrator, &state, &input, &input, NULL)) return 4;
+    print(&model, &state);
+    return 0;
+}
+"""
+
+
+def hinged_in_python(real: str) -> list[float]:
+    """What HINGED prints, by the core itself."""
+    axle = {"kind": "fixed", "axle_rad": -1.5707963267948966}
+    behind = {**axle, "driven": False}
+    robot = ArticulatedVehicle({
+        "mass_kg": 20.0, "yaw_inertia_kgm2": 1.0, "com_x_m": 0.1, "wheel_radius_m": 0.08, "wheel_inertia_kgm2": 0.002,
+        "motor_gain_Nm_per_V": 0.4, "motor_damping_Nms": 0.2,
+        "wheel": [{**axle, "x_m": 0.0, "y_m": 0.25}, {**axle, "x_m": 0.0, "y_m": -0.25},
+                  {**behind, "x_m": -0.05, "y_m": 0.0, "body": "caster"},
+                  {**behind, "x_m": -0.6, "y_m": 0.2, "body": "trailer"},
+                  {**behind, "x_m": -0.6, "y_m": -0.2, "body": "trailer"}],
+        "body": [{"name": "caster", "hinge": "free", "hinge_x_m": 0.4, "hinge_y_m": 0.0, "mass_kg": 0.7,
+                  "com_x_m": -0.04, "yaw_inertia_kgm2": 0.001},
+                 {"name": "trailer", "hinge": "free", "hinge_x_m": -0.2, "hinge_y_m": 0.0, "mass_kg": 8.0,
+                  "com_x_m": -0.5, "yaw_inertia_kgm2": 0.5}]}, real)
+    plant = robot.plant(step_s=0.01, hinge_angle_rad=[2.0, 0.0])
+    plant.run({"voltage_V[1]": 3.0, "voltage_V[2]": 5.0}, 500)
+    at = plant.motion()
+    return [at.x_m, at.y_m, at.heading_rad, *map(float, at.hinge_angle_rad), at.energy_J]
+
+
+@pytest.mark.parametrize(("compiler", "real"), [("gcc", "double"), ("clang++", "single")])
+def test_a_vehicle_with_a_caster_and_a_trailer_has_the_bits_of_the_core(compiler, real, pair):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"no {compiler}")
+    (pair / "hinged.c").write_text(HINGED, encoding="utf-8")
+    options = ["-O1", *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+    run(compiler, "-x", language(compiler), *options, *STRICT, "-I.", "hinged.c", "laconic/laconic.c", "-o", "hinged",
+        folder=pair)
+    assert [float.fromhex(word) for word in run("./hinged", folder=pair).split()] == hinged_in_python(real)
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("nm") is None, reason="needs gcc and nm")
+def test_without_room_for_bodies_nothing_of_hinges_is_in_the_files(pair):
+    names = []
+    for bodies in (0, 1):
+        run("gcc", "-O0", f"-DLACONIC_MAX_BODIES={bodies}", "-c", "laconic/laconic.c", "-o", "part.o", folder=pair)
+        names.append(re.findall(r" [TtRr] (laconic_articulated_\w+)$", run("nm", "part.o", folder=pair), re.MULTILINE))
+    assert not names[0]
+    assert "laconic_articulated_step" in names[1]
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("nm") is None, reason="needs gcc and nm")
+def test_a_program_without_hinges_links_no_function_of_them(pair):
+    (pair / "plain.c").write_text('#include "laconic/laconic.h"\nint main(void) { return (int)laconic_self_test(); }\n',
+                                  encoding="utf-8")
+    run("gcc", "-O1", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections", "-I.", "plain.c",
+        "laconic/laconic.c", "-o", "plain", folder=pair)
+    kept = run("nm", "plain", folder=pair)
+    assert "laconic_self_test" in kept and "laconic_articulated" not in kept
 
 
 BOTH = """

@@ -88,6 +88,29 @@ def test_every_function_that_a_program_begins_with_is_checked(call, libraries):
     assert same.returncode == 0, same.stderr
 
 
+HINGED = {
+    "prepare": "static laconic_articulated_model m; static laconic_articulated_vehicle v;"
+               "return (int)laconic_articulated_prepare(&m, &v, NULL);",
+    "state": "static laconic_articulated_model m; static laconic_articulated_state q; "
+             "static laconic_articulated_start s; static laconic_articulated_input u; "
+             "return (int)laconic_articulated_state_set(&q, NULL, &m, &s, &u, NULL);",
+    "integrator": "static laconic_articulated_model m; static laconic_articulated_integrator i;"
+                  "return (int)laconic_articulated_integrator_prepare(&i, 0, &m, (laconic_real)0.01, NULL);"}
+
+
+@pytest.mark.parametrize("call", HINGED)
+def test_a_program_with_hinges_that_differs_does_not_link_and_one_without_needs_not_agree_on_bodies(call, libraries):
+    text = f"#include <laconic/laconic.h>\nint main(void) {{ {HINGED[call]} }}\n"
+    (libraries / "hinged.c").write_text(text, encoding="utf-8")
+    for definition, name in (("LACONIC_MAX_BODIES=4", "LACONIC_MAX_BODIES_4"), ("LACONIC_SINGLE", "LACONIC_SINGLE")):
+        assert name in missing(run(libraries, f"-D{definition}", "-I.", "hinged.c", "0.o", "-Wl,--gc-sections",
+                                   "-o", "program"))
+    same = run(libraries, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I.", "hinged.c", "0.o", "-o", "program")
+    assert same.returncode == 0, same.stderr
+    other = run(libraries, "-DLACONIC_MAX_BODIES=4", "-I.", "plant.c", "0.o", "-o", "program")
+    assert other.returncode == 0, other.stderr
+
+
 def test_a_program_that_includes_the_core_itself_needs_nothing_more(libraries):
     text = f'#include "laconic/laconic.h"\n#include "laconic/laconic.c"\nint main(void) {{ {CALLS["plant"]} }}\n'
     (libraries / "all.c").write_text(text, encoding="utf-8")

@@ -1,0 +1,283 @@
+// Commands of hinges, step by step: rates, angles and twists within the limits of the scene.
+import { Refused } from "./refused.js";
+
+/** @typedef {import("./hinge_tables.js").Hinge} Hinge */
+
+const AHEAD = [1, 0, 0];
+const ROUNDING = 1e-9; // of a limit of rate
+const OF_ANGLE = 1e-12; // rad
+const HALVINGS = 50; // of the way to a twist beyond a limit
+const LEAST_SIZE_M = 1e-3;
+const ON_THE_AXLE = 1e-6; // of the vehicle's size
+
+function within(/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ high) {
+  return Math.min(Math.max(value, low), high);
+}
+
+function isZero(/** @type {number[]} */ twist) {
+  return twist.every((each) => each === 0);
+}
+
+/** What is commanded, and what of it acts. Angles of prescribed and coordinated hinges follow commands alone. */
+export class Commands {
+  /**
+   * @param {Hinge[]} hinges @param {{name: string, hinge_x_m: number, hinge_y_m: number}[]} bodies
+   * @param {number} axle_x_m ξ of the carriage's own axle
+   */
+  constructor(hinges, bodies, axle_x_m) {
+    this.prescribed = hinges.filter(({ kind }) => kind === "prescribed");
+    this.coordinated = hinges.filter(({ kind }) => kind === "coordinated");
+    this.places = this.coordinated.map(({ name }) => {
+      const body = bodies.find((each) => each.name === name);
+      return body ? [body.hinge_x_m, body.hinge_y_m] : [0, 0];
+    });
+    this.axle = axle_x_m;
+    this.size = Math.max(LEAST_SIZE_M, ...this.places.flat().map(Math.abs));
+    this.isLimited = this.coordinated.some(
+      ({ low, high, rateLimit }) => Number.isFinite(rateLimit) || Number.isFinite(low) || Number.isFinite(high),
+    );
+    /** @type {Map<string, number>} */
+    this.angles = new Map();
+    /** @type {Map<string, number>} rates and angles that are commanded */
+    this.rates = new Map();
+    this.targets = new Map();
+    /** @type {number[]} the twist that is commanded, and that which acts */
+    this.wanted = AHEAD;
+    this.twist = AHEAD;
+    /** @type {Map<string, {hinge: string, limit: string, first_s: number, steps: number}>} */
+    this.limited = new Map();
+  }
+
+  /** The commands of an input, checked before; rates and angles by the names of hinges. */
+  set(
+    /** @type {Record<string, number>} */ rates,
+    /** @type {Record<string, number>} */ targets,
+    /** @type {number[] | undefined} */ twist,
+  ) {
+    this.rates = new Map(Object.entries(rates));
+    this.targets = new Map(Object.entries(targets));
+    this.wanted = twist ?? AHEAD;
+  }
+
+  /** The twist of a curvature of the path to the left. */
+  ofCurvature(/** @type {number} */ curvature) {
+    return [1, -this.axle * curvature, curvature];
+  }
+
+  /** The same of the angle of a wheel on the middle line. */
+  ofAngle(/** @type {number} */ angle) {
+    const base = this.places.reduce((sum, [x]) => sum + x, 0) / this.places.length - this.axle;
+    if (Math.abs(base) < ON_THE_AXLE * this.size)
+      throw new Refused(
+        "steering_angle_rad",
+        "is that of wheels ahead of or behind a fixed axle, and these lie on it or around the origin; give steering_twist",
+        "no such angle",
+      );
+    if (!(Math.abs(angle) < Math.PI / 2))
+      throw new Refused("steering_angle_rad", `is ${angle}; give less than a right angle`, "out of range", angle);
+    return this.ofCurvature(Math.tan(angle) / base);
+  }
+
+  /** At the start the wheels point as commanded, or as near to it from straight ahead as their stops allow. */
+  begin(/** @type {Hinge[]} */ hinges) {
+    this.angles = new Map(hinges.map(({ name, angle }) => [name, angle]));
+    this.limited.clear();
+    this.twist = this.isLimited ? this.unit(this.wanted) : this.wanted;
+    if (!this.isLimited || isZero(this.twist)) return;
+    this.takeAngles();
+    const beyond = this.coordinated.some((hinge) => !isBetween(hinge, this.angle(hinge), OF_ANGLE));
+    if (!beyond) return;
+    this.twist = AHEAD;
+    this.takeAngles();
+    this.twist = this.towards(this.unit(this.wanted), 0, Infinity);
+    this.takeAngles();
+  }
+
+  angle(/** @type {Hinge} */ { name }) {
+    return this.angles.get(name) ?? 0;
+  }
+
+  /** Whether held inputs take all further steps as the present one. */
+  get isSettled() {
+    const rests = this.prescribed.every((hinge) => {
+      const rate = this.rates.get(hinge.name) ?? 0;
+      const target = this.targets.get(hinge.name);
+      if (target !== undefined) return target === this.angle(hinge) && isBetween(hinge, target);
+      return rate === 0 || (!isStopped(hinge) && Math.abs(rate) <= hinge.rateLimit);
+    });
+    return rests && this.goal().every((each, k) => each === this.twist[k]);
+  }
+
+  goal() {
+    return this.isLimited ? this.unit(this.wanted) : this.wanted;
+  }
+
+  /** What acts while all is settled. */
+  rest() {
+    return {
+      rates: this.prescribed.map(({ name }) => ({ name, rate: this.targets.has(name) ? 0 : (this.rates.get(name) ?? 0) })),
+      twist: this.twist,
+    };
+  }
+
+  /** The rate of each prescribed hinge, and the twist at the end, of one step from `time_s`. */
+  step(/** @type {number} */ time_s, /** @type {number} */ h) {
+    const angles = new Map(this.angles),
+      limited = new Map([...this.limited].map(([key, each]) => [key, { ...each }])),
+      twist = this.twist;
+    try {
+      const rates = this.prescribed.map((hinge) => ({ name: hinge.name, rate: this.follow(hinge, time_s, h) }));
+      if (this.coordinated.length) this.steer(time_s, h);
+      return { rates, twist: this.twist, undo: () => this.restore(angles, limited, twist) };
+    } catch (refused) {
+      this.restore(angles, limited, twist);
+      throw refused;
+    }
+  }
+
+  restore(
+    /** @type {Map<string, number>} */ angles,
+    /** @type {Map<string, any>} */ limited,
+    /** @type {number[]} */ twist,
+  ) {
+    this.angles = angles;
+    this.limited = limited;
+    this.twist = twist;
+  }
+
+  /** The rate of a prescribed hinge over a step, within its limits. */
+  follow(/** @type {Hinge} */ hinge, /** @type {number} */ time_s, /** @type {number} */ h) {
+    const angle = this.angle(hinge),
+      target = this.targets.get(hinge.name);
+    let wanted = this.rates.get(hinge.name) ?? 0;
+    if (target !== undefined) {
+      const reachable = within(target, hinge.low, hinge.high);
+      if (Math.abs(reachable - target) > OF_ANGLE) this.limit(hinge, "angle", time_s, target, reachable);
+      wanted = (reachable - angle) / h;
+    }
+    let rate = within(wanted, -hinge.rateLimit, hinge.rateLimit);
+    if (Math.abs(wanted) > hinge.rateLimit * (1 + ROUNDING))
+      this.limit(hinge, "rate", time_s, Math.abs(wanted), hinge.rateLimit);
+    const isReached = target !== undefined && rate === wanted,
+      end = isReached ? within(target, hinge.low, hinge.high) : angle + 0.5 * h * (rate + rate),
+      stop = within(end, hinge.low, hinge.high);
+    if (Math.abs(stop - end) > OF_ANGLE) {
+      this.limit(hinge, "angle", time_s, end, stop);
+      rate = (stop - angle) / h;
+    }
+    this.angles.set(hinge.name, stop);
+    return rate;
+  }
+
+  /** Counts a limited step; refuses it where the scene says so. */
+  limit(
+    /** @type {Hinge} */ hinge,
+    /** @type {string} */ what,
+    /** @type {number} */ time_s,
+    /** @type {number} */ value,
+    /** @type {number} */ limit,
+  ) {
+    const unit = what === "rate" ? "rad/s" : "rad";
+    if (hinge.refuses)
+      throw new Refused(
+        `${hinge.place} (${hinge.name})`,
+        `at t = ${time_s} s the command asks for ${value} ${unit}, the limit of its ${what} is ${limit} ${unit}; ` +
+          'command less, or give at_limit = "saturate"',
+        "limit of a hinge",
+        value,
+        limit,
+      );
+    const key = `${what} ${hinge.name}`,
+      found = this.limited.get(key) ?? { hinge: hinge.name, limit: what, first_s: time_s, steps: 0 };
+    this.limited.set(key, { ...found, steps: found.steps + 1 });
+  }
+
+  /** The twist goes as far towards the commanded one as the limits of all coordinated hinges allow. */
+  steer(/** @type {number} */ time_s, /** @type {number} */ h) {
+    const target = this.goal();
+    if (!this.isLimited || isZero(target) || isZero(this.twist)) {
+      this.twist = target; // a twist of 0 is refused by the core
+      return;
+    }
+    const reached = this.towards(target, time_s, h);
+    this.turns(this.twist, reached).forEach((turn, k) => {
+      const hinge = this.coordinated[k];
+      this.angles.set(hinge.name, this.angle(hinge) + turn);
+    });
+    this.twist = reached;
+  }
+
+  towards(/** @type {number[]} */ target, /** @type {number} */ time_s, /** @type {number} */ h) {
+    const now = this.twist,
+      part = (/** @type {number} */ share) => now.map((each, k) => each + share * (target[k] - each));
+    let broken = this.broken(target, h);
+    if (!broken) return target;
+    let low = 0,
+      high = 1;
+    for (let k = 0; k < HALVINGS; k++) {
+      const middle = 0.5 * (low + high),
+        nearer = this.broken(part(middle), h);
+      if (nearer) broken = nearer;
+      if (nearer) high = middle;
+      else low = middle;
+    }
+    const { hinge, what, limit } = broken,
+      turn = this.turns(now, target)[this.coordinated.indexOf(hinge)];
+    this.limit(hinge, what, time_s, what === "rate" ? Math.abs(turn) / h : this.angle(hinge) + turn, limit);
+    return this.unit(part(low));
+  }
+
+  /** The first limit that a step from the present twist to another breaks. */
+  broken(/** @type {number[]} */ then, /** @type {number} */ h) {
+    const turns = this.turns(this.twist, then);
+    for (const [k, hinge] of this.coordinated.entries()) {
+      const angle = this.angle(hinge) + turns[k],
+        isFast = Number.isFinite(h) && Math.abs(turns[k]) > h * hinge.rateLimit * (1 + ROUNDING);
+      if (isFast) return { hinge, what: "rate", limit: hinge.rateLimit };
+      if (!isBetween(hinge, angle, OF_ANGLE))
+        return { hinge, what: "angle", limit: turns[k] > 0 ? hinge.high : hinge.low };
+    }
+    return undefined;
+  }
+
+  /** The twist of size 1, lengths over the vehicle's; 0 stays 0. */
+  unit(/** @type {number[]} */ twist) {
+    const largest = Math.max(...twist.map(Math.abs));
+    if (!(largest > 0 && largest < Infinity)) return [0, 0, 0];
+    const scaled = twist.map((each) => each / largest),
+      yaw = scaled[2] * this.size;
+    const length = Math.sqrt(scaled[0] * scaled[0] + scaled[1] * scaled[1] + yaw * yaw);
+    return scaled.map((each) => each / length);
+  }
+
+  /** The velocity at each hinge: ahead, to the left. */
+  directions(/** @type {number[]} */ [ahead, aside, yaw]) {
+    return this.places.map(([x, y]) => [ahead - yaw * y, aside + yaw * x]);
+  }
+
+  /** How far each hinge turns from one twist to another. */
+  turns(/** @type {number[]} */ now, /** @type {number[]} */ then) {
+    const before = this.directions(now);
+    return this.directions(then).map(([x, y], k) => {
+      const [x0, y0] = before[k];
+      return Math.atan2(y * x0 - x * y0, x * x0 + y * y0);
+    });
+  }
+
+  /** Angles of the coordinated hinges, next to those that the scene gives. */
+  takeAngles() {
+    this.directions(this.twist).forEach(([x, y], k) => {
+      const hinge = this.coordinated[k],
+        angle = Math.atan2(y, x);
+      this.angles.set(hinge.name, angle + 2 * Math.PI * Math.round((hinge.angle - angle) / (2 * Math.PI)));
+    });
+  }
+}
+
+export function isStopped(/** @type {Hinge} */ { low, high }) {
+  return Number.isFinite(low) || Number.isFinite(high);
+}
+
+export function isBetween(/** @type {Hinge} */ { low, high }, /** @type {number} */ angle, allowed = 0) {
+  return low - allowed <= angle && angle <= high + allowed;
+}

@@ -1,0 +1,340 @@
+// One vehicle with hinges: made of a scene, stepped with an input held, read by its outputs.
+import { askFinite, askKeys, askNumber, askNumbers, askTable, toldOf } from "./checks.js";
+import { Commands, isBetween, isStopped } from "./hinge_commands.js";
+import { InputReader, axleOf } from "./hinge_inputs.js";
+import { CARRIAGE, HINGE_KINDS, inTables, readHinges } from "./hinge_tables.js";
+import { Module } from "./module.js";
+import { Refused } from "./refused.js";
+import { SceneSetter, inRad } from "./scene.js";
+
+/** @typedef {import("./hinge_tables.js").Hinge} Hinge */
+
+const ALLOWED = 1e-9; // of the size of a start: what rounding may change of it
+const START = ["velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
+const WITHOUT_NUMBERS = ["name", "parent", "hinge"];
+const PER_WHEEL = /^(?:wheel|along|lateral|brake)_/;
+const REACTIONS = ["wheel_torque_Nm", "along_N", "lateral_N", "brake_Nm", "hinge_torque_Nm", "hinge_force_N"];
+
+/** Sets all numbers of a scene with hinges in a robot. */
+class HingedSetter extends SceneSetter {
+  /** @param {any} scene @param {ReturnType<typeof readHinges>} found */
+  setHinged(scene, found) {
+    checkIdeal(scene);
+    const { body, caster, trailer, ...vehicle } = scene.vehicle;
+    this.set({ ...scene, vehicle: { ...vehicle, wheel: found.wheels.map(({ table }) => table) } });
+    const numbers = new Map([[CARRIAGE, 0], ...found.bodies.map(({ name }, k) => /** @type {const} */ ([name, k + 1]))]);
+    this.put("vehicle.body", 0, found.bodies.length);
+    found.bodies.forEach((each, k) => {
+      this.put("vehicle.body[#].parent", k + 1, numbers.get(each.parent) ?? 0);
+      this.put("vehicle.body[#].hinge", k + 1, HINGE_KINDS.indexOf(each.hinge) + 1);
+      for (const [key, value] of Object.entries(each))
+        if (!WITHOUT_NUMBERS.includes(key)) this.put(`vehicle.body[#].${key}`, k + 1, value);
+    });
+    found.wheels.forEach((each, k) => this.put("vehicle.wheel[#].body", k + 1, numbers.get(each.body) ?? 0));
+  }
+
+  put(/** @type {string} */ path, /** @type {number} */ item, /** @type {number} */ value) {
+    this.module.c.laconic_web_set(this.robot, this.module.fields.get(path), item, value);
+  }
+
+  /** A velocity goes to the core when the vehicle is prepared. */
+  velocity() {}
+}
+
+/** Refused for friction and limits of drives, which do not act on vehicles with hinges yet. */
+function checkIdeal(/** @type {any} */ { ground, vehicle, initial }) {
+  const paths = [
+    ...Object.keys(ground ?? {})
+      .filter((key) => !key.startsWith("slope_"))
+      .map((key) => `ground.${key}`),
+    ...(vehicle.drive === undefined ? [] : ["vehicle.drive"]),
+    ...Array.from(vehicle.wheel ?? [], (/** @type {any} */ each, k) =>
+      each.motor_circuit === undefined || each.motor_circuit === "driven" ? "" : `vehicle.wheel[${k + 1}].motor_circuit`,
+    ).filter(Boolean),
+  ];
+  if (paths.length)
+    throw new Refused(
+      paths[0],
+      "does not act on vehicles with hinges yet; take it out for a ground that holds every wheel",
+      "not yet",
+    );
+  if (initial !== undefined) askKeys("initial", inRad("initial", initial), START);
+}
+
+/** A vehicle with hinges at its start. Call free() when it is no longer needed: its memory is used again. */
+export class HingedRobot {
+  #pointer = 0;
+  /** @type {any} what acts, as checked */
+  #input = { plain: [], named: [], rates: {}, targets: {}, twist: undefined };
+
+  /** @param {import("./module.js").Module} module @param {any} scene @param {string} method @param {number} step_s */
+  constructor(module, scene, method, step_s) {
+    if (!(module instanceof Module))
+      throw new Refused("", "a robot is made by robot() of what load() gives", "not loaded");
+    this.module = module;
+    this.c = module.c;
+    askTable("vehicle", scene.vehicle, "give an object with mass_kg and the vehicle's other keys");
+    const found = readHinges(scene.vehicle);
+    this.hinges = found.hinges;
+    this.bodies = found.hinges.map(({ name }) => name);
+    this.parents = found.bodies.map(({ parent }) => this.bodies.indexOf(parent) + 1); // 0: the carriage
+    this.wheelPlaces = found.wheels.map(({ place }) => place);
+    this.wheelCount = found.wheels.length;
+    this.bodyCount = found.hinges.length;
+    this.step_s = step_s;
+    this.ordered = new Commands(found.hinges, /** @type {any[]} */ (found.bodies), axleOf(found.wheels).x_m);
+    this.reader = new InputReader(found.hinges, found.wheels, this.ordered);
+    this.watched = found.hinges.flatMap((hinge) =>
+      ["free", "motor"].includes(hinge.kind) && isStopped(hinge) ? [hinge] : [],
+    );
+    this.acting = this.ordered.rest();
+    this.#pointer = this.c.laconic_web_new();
+    if (!this.#pointer) throw new RangeError("no memory for another robot; free some");
+    try {
+      this.begin(scene, found, method);
+    } catch (refused) {
+      this.free();
+      throw refused;
+    }
+  }
+
+  /** Its place in the module's memory; Refused after free(), since another robot may be there. */
+  get pointer() {
+    if (!this.#pointer) throw new Refused("robot", "was freed; make another by robot()", "freed");
+    return this.#pointer;
+  }
+
+  /** @param {any} scene @param {ReturnType<typeof readHinges>} found @param {string} method */
+  begin(scene, found, method) {
+    new HingedSetter(this.module, this.pointer).setHinged(scene, found);
+    askNumber("run.step_s", this.step_s);
+    for (const [what, count, most] of /** @type {[string, number, number]} */ [
+      ["vehicle.body", this.bodyCount, this.c.laconic_web_max_bodies()],
+      ["vehicle.wheel", this.wheelCount, this.c.laconic_web_max_wheels()],
+    ])
+      if (count > most)
+        throw new Refused(what, `${count} of them, but the core has room for ${most}; take some out`, "too many");
+    const number = this.module.methods.find((each) => each.name === method)?.number ?? -1;
+    this.check(this.c.laconic_web_prepare(this.pointer, number, this.step_s));
+    this.setStart(inRad("initial", scene.initial ?? {}));
+    this.place();
+  }
+
+  /** Velocities of the start; hinges that follow their wheels begin as these roll. */
+  setStart(/** @type {any} */ { velocity_body_m_per_s = [0, 0], yaw_rate_rad_per_s = 0 }) {
+    const velocity = askNumbers("initial.velocity_body_m_per_s", velocity_body_m_per_s, 2, "ahead and to the left"),
+      turn = askFinite("initial.yaw_rate_rad_per_s", yaw_rate_rad_per_s);
+    this.put("initial.velocity_m_per_s[#]", velocity);
+    this.put("initial.yaw_rate_rad_per_s[#]", [turn]);
+    const rates = this.rollingRates(velocity, turn);
+    this.put(
+      "initial.hinge_angle_rad[#]",
+      this.hinges.map(({ angle }) => angle),
+    );
+    this.put("initial.hinge_rate_rad_per_s[#]", rates);
+    this.startSize = Math.max(...[...velocity, turn, ...rates].map(Math.abs));
+  }
+
+  rollingRates(/** @type {number[]} */ velocity, /** @type {number} */ turn) {
+    const twists = [{ x: velocity[0], y: velocity[1], turn }];
+    return this.hinges.map(({ angle, rate }, k) => {
+      const above = twists[this.parents[k]];
+      const [x, y, axle_x, axle_y] = [0, 1, 2, 3].map((each) => this.c.laconic_web_link(this.pointer, k + 1, each));
+      const ahead = above.x - above.turn * y,
+        aside = above.y + above.turn * x,
+        cosine = Math.cos(angle),
+        sine = Math.sin(angle);
+      const own = { x: ahead * cosine + aside * sine, y: aside * cosine - ahead * sine };
+      const follows = this.c.laconic_web_follows(this.pointer, k + 1);
+      const own_turn = follows ? -(axle_x * own.x + axle_y * own.y) : above.turn + rate;
+      twists.push({ ...own, turn: own_turn });
+      return own_turn - above.turn;
+    });
+  }
+
+  put(/** @type {string} */ path, /** @type {number[]} */ values) {
+    const field = this.module.fields.get(path);
+    values.forEach((value, k) => this.c.laconic_web_set(this.pointer, field, k + 1, value));
+  }
+
+  /** Puts the vehicle at its start under the input. Rates of hinges begin with the first step, as after any jump. */
+  place() {
+    this.ordered.begin(this.hinges);
+    this.act({ rates: this.ordered.prescribed.map(({ name }) => ({ name, rate: 0 })), twist: this.ordered.twist });
+    this.check(this.c.laconic_web_place(this.pointer));
+    if (!(this.c.laconic_web_changed(this.pointer) > ALLOWED * Math.max(1, this.startSize ?? 0))) return;
+    const { velocity_body_m_per_s: near, yaw_rate_rad_per_s: turn } = this.outputs();
+    throw new Refused(
+      "initial.velocity_body_m_per_s",
+      `this start makes a fixed wheel slide; the nearest motion that all wheels allow is [${near.join(", ")}] m/s with ` +
+        `a yaw rate of ${turn} rad/s`,
+      "start against constraints",
+    );
+  }
+
+  check(/** @type {number} */ status) {
+    if (status !== 0) throw inTables(Refused.of(this.module, this.pointer), this.hinges, this.wheelPlaces);
+  }
+
+  /** Sets what acts from now on; every input that is not given becomes 0. A refused one changes nothing. Before the
+   * first step it also sets where coordinated wheels point at the start. */
+  setInput(/** @type {any} */ input) {
+    const before = this.#input,
+      pointer = this.pointer;
+    this.use(this.reader.read(input));
+    if (this.c.laconic_web_steps(pointer) > 0) return;
+    try {
+      this.place();
+    } catch (refused) {
+      this.use(before);
+      this.place();
+      throw refused;
+    }
+  }
+
+  use(/** @type {any} */ input) {
+    this.c.laconic_web_clear_input(this.pointer);
+    this.#input = input;
+    for (const { name, values, isOne } of input.plain)
+      if (isOne) this.c.laconic_web_set(this.pointer, this.module.fields.get(name), 0, values[0]);
+      else this.put(`${name}[#]`, values);
+    for (const { name, numbers } of input.named)
+      for (const [hinge, value] of Object.entries(numbers))
+        this.c.laconic_web_set(this.pointer, this.fieldOf(name), this.bodies.indexOf(hinge) + 1, value);
+    this.ordered.set(input.rates, input.targets, input.twist);
+    this.act(this.acting);
+  }
+
+  fieldOf(/** @type {string} */ name) {
+    return this.module.fields.get(`${name}[#]`);
+  }
+
+  act(/** @type {{rates: {name: string, rate: number}[], twist: number[]}} */ { rates, twist }) {
+    const field = this.fieldOf("hinge_rate_rad_per_s");
+    for (const { name, rate } of rates)
+      this.c.laconic_web_set(this.pointer, field, this.bodies.indexOf(name) + 1, rate);
+    if (this.ordered.coordinated.length) this.put("twist[#]", twist);
+    this.acting = { rates, twist };
+  }
+
+  /** Takes steps with the input held. */
+  run(/** @type {number} */ steps) {
+    const { pointer } = this;
+    if (!Number.isSafeInteger(steps) || steps < 0)
+      throw new Refused("steps", `${toldOf(steps)} is no whole number of steps; give 0 or more`, "not a whole number");
+    for (let left = steps; left > 0; ) {
+      const count = this.ordered.isSettled && !this.watched.length ? Math.min(left, 2 ** 30) : 1;
+      if (count > 1) this.runSettled(pointer, count);
+      else this.runOne(pointer);
+      left -= count;
+    }
+  }
+
+  runSettled(/** @type {number} */ pointer, /** @type {number} */ count) {
+    this.act(this.ordered.rest());
+    try {
+      this.check(this.c.laconic_web_run(pointer, count));
+    } finally {
+      const { hinge_angle_rad } = this.outputs();
+      for (const { name } of this.ordered.prescribed)
+        if (!this.ordered.targets.has(name)) this.ordered.angles.set(name, hinge_angle_rad[name]);
+    }
+  }
+
+  runOne(/** @type {number} */ pointer) {
+    const acted = this.acting,
+      next = this.ordered.step(this.time_s, this.step_s);
+    try {
+      this.act(next);
+      this.check(this.c.laconic_web_run(pointer, 1));
+      this.checkStops(pointer);
+    } catch (refused) {
+      next.undo();
+      this.act(acted);
+      throw refused;
+    }
+  }
+
+  /** A free or motor hinge that comes to its stop ends the run before that step. */
+  checkStops(/** @type {number} */ pointer) {
+    if (!this.watched.length) return;
+    const { hinge_angle_rad } = this.outputs();
+    for (const hinge of this.watched) {
+      const angle = hinge_angle_rad[hinge.name];
+      if (isBetween(hinge, angle)) continue;
+      this.c.laconic_web_back(pointer);
+      const limit = angle < hinge.low ? hinge.low : hinge.high;
+      throw new Refused(
+        `${hinge.place} (${hinge.name})`,
+        `comes to its stop at ${limit} rad, and the model has no stops that push back; steer or start so that it stays ` +
+          "between them, or take the stop out",
+        "hinge at stop",
+        angle,
+        limit,
+      );
+    }
+  }
+
+  get steps() {
+    return this.c.laconic_web_steps(this.pointer);
+  }
+
+  get time_s() {
+    return this.steps * this.step_s;
+  }
+
+  /** What acts: the twist along which coordinated wheels point, and the rates of prescribed hinges. */
+  get commands() {
+    const { rates, twist } = this.acting;
+    const found = { steering_rate_rad_per_s: Object.fromEntries(rates.map(({ name, rate }) => [name, rate])) };
+    return this.ordered.coordinated.length ? { ...found, steering_twist: [...twist] } : found;
+  }
+
+  /** Which limits held commands back, since when and for how many steps. */
+  get limited() {
+    return [...this.ordered.limited.values()].map((each) => ({ ...each }));
+  }
+
+  /** All outputs that follow from the motion at this moment: lists by wheel, objects by the names of hinges. */
+  outputs() {
+    const at = this.c.laconic_web_outputs(this.pointer);
+    const { velocity_m_per_s, ...rest } = this.read(at, (name) => !REACTIONS.includes(name));
+    return /** @type {Record<string, any>} */ ({ velocity_body_m_per_s: velocity_m_per_s, ...rest });
+  }
+
+  /** Forces that ground and hinges must deliver at this moment. @throws Refused where wheels allow no motion */
+  reactions() {
+    this.check(this.c.laconic_web_reactions(this.pointer));
+    const at = this.c.laconic_web_outputs(this.pointer);
+    const { hinge_force_N, hinge_torque_Nm, ...rest } = this.read(at, (name) => REACTIONS.includes(name));
+    const along = (/** @type {number} */ which) =>
+      Object.fromEntries(this.bodies.map((name, k) => [name, hinge_force_N[2 * k + which]]));
+    return {
+      ...rest,
+      hinge_reaction_Nm: hinge_torque_Nm,
+      hinge_force_along_N: along(0),
+      hinge_force_across_N: along(1),
+    };
+  }
+
+  read(/** @type {number} */ at, /** @type {(name: string) => boolean} */ isWanted) {
+    /** @type {Record<string, any>} */
+    const found = {};
+    for (const { name, offset, count } of this.module.outputs)
+      if (isWanted(name)) found[name] = this.shaped(name, this.module.reals(at + offset, count));
+    return found;
+  }
+
+  shaped(/** @type {string} */ name, /** @type {number[]} */ values) {
+    if (values.length === 1) return values[0];
+    if (name === "velocity_m_per_s" || name === "hinge_force_N") return values;
+    if (PER_WHEEL.test(name)) return values.slice(0, this.wheelCount);
+    return Object.fromEntries(this.bodies.map((each, k) => [each, values[k]]));
+  }
+
+  /** Gives its memory back; a second time does nothing. */
+  free() {
+    if (this.#pointer) this.c.laconic_web_free(this.#pointer);
+    this.#pointer = 0;
+  }
+}
