@@ -103,7 +103,7 @@ class _Motions:
             raise BadInput(f"{start}: no force on the carriage and no torque of a hinge holds it; see the springs and "
                            "start angles of its hinges")
         limb = self.tree.limbs[hinge]
-        lever = f", whose wheels lie {abs(limb.axles[0].lever):.3g} m from it" if limb.follows else ""
+        lever = f", whose wheels lie {abs(limb.axles[0].lever):.3g} m from it," if limb.follows else ""
         raise BadInput(f"{start}: {limb.hinge.place} ({limb.hinge.name}){lever} keeps no angle; give it a longer trail"
                        f"{'' if limb.follows else ', a spring or another start angle'}")
 
