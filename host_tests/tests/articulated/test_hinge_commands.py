@@ -164,6 +164,7 @@ def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, n
     status, text, why = told([command, *arguments], capsys)
     assert status == 2 and text == "" and why.count("\n") == 1
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
+    assert "[[vehicle.support]]" in why and "laconic import --no-hinges" in why
 
 
 @pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"], ["--bag", "x.mcap"]])
