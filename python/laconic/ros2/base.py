@@ -143,6 +143,16 @@ class Base:
             wanted[2] = math.copysign(most, wanted[2])
         return remarks
 
+    @property
+    def is_car(self) -> bool:
+        """Whether `ackermann` drives it."""
+        return False
+
+    def ackermann(self, robot: int, speed_m_per_s: float, steering_rad: float, *, acceleration_m_per_s2: float = 0.0,
+                  steering_rad_per_s: float = 0.0) -> list[str]:
+        """Drives a car by the angle of a wheel on its middle line; returns as `command`."""
+        raise NotImplementedError  # which is_car tells
+
     def advance(self, steps: int) -> list[tuple[int, Refused]]:
         """Takes steps of all robots; returns those whose step the core refused, which stand still from then on."""
         loop, step_s, refused = self.loop, self.step_s, []

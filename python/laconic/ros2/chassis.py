@@ -1,7 +1,7 @@
 """Where the wheels of a vehicle with hinges are at given hinge angles, what they allow, and how to steer them.
 
 A twist is the velocity of the body frame's origin and the yaw rate. Rows have three columns for it and one for the rate
-of each hinge. A hinge is steered if it is commanded or has a motor, hangs on the carriage and has a fixed wheel behind it.
+of each hinge. A hinge is steered if it is commanded or has a motor, hangs on the carriage and carries a fixed wheel.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ class Chassis:
     # ---- rows
 
     def rows(self, angles: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Rolling of all wheels [rad/s], and sliding of fixed wheels along their axles [m/s]: (N, 3 + H), (F, 3 + H)."""
+        """Rolling of wheels [rad/s], and sliding of fixed wheels along their axles [m/s]: (N, 3 + H) and (F, 3 + H)."""
         origins, directions = [0j], [1 + 0j]
         for parent, hinge, angle in zip(self._parents, self._hinges, angles, strict=True):
             origins.append(origins[parent] + directions[parent] * hinge)

@@ -1,7 +1,7 @@
 """A mobile base whose vehicle has hinges: cars, swerve drives, tricycles, loaders; robots with casters or trailers.
 
-The base turns its steered hinges so that their wheels roll along the commanded motion. Its wheels follow the part of the
-command that the hinges allow at their present angles. Casters and trailers follow by themselves.
+The base turns its steered hinges so that their wheels roll along the commanded motion. The wheels' set speeds are those
+of the part of the command that the hinges allow at their present angles. Casters and trailers follow by themselves.
 """
 
 from __future__ import annotations
@@ -167,8 +167,9 @@ class Hinged:
         self.margin_N, self.margin_steps = math.inf, 0
 
     def steer(self, rate_limit: float) -> None:
-        """Sets what turns the hinges in the coming step."""
-        self.live.values[self._first :] = self.steering.inputs(self.motion, rate_limit)
+        """Sets what turns the hinges in the coming step; the first keeps them, as a record begins with their twist."""
+        if self.steps:
+            self.live.values[self._first :] = self.steering.inputs(self.motion, rate_limit)
 
     def step(self, given: np.ndarray) -> None:
         """One step with these voltages or torques of the wheels."""
@@ -258,7 +259,8 @@ class HingedRobots:
         """As Motion.grip."""
         each = self.robots[robot]
         found, each.margin_N = each.margin_N, math.inf
-        return f"wheels would slip: the ground had to hold {-found:.3g} N more than friction allows" if found < 0 else ""
+        return f"wheels would slip: the ground had to hold {-found:.3g} N more than friction allows" if found < 0.0 \
+            else ""
 
 
 class HingedOdometry(Odometry):
@@ -322,9 +324,14 @@ class HingedBase(Base):
         """As in Base; a car that cannot turn so tightly keeps its speed and turns less."""
         return self._follow(robot, np.array([ahead, left, yaw_rate]), ("linear.x", "linear.y", "angular.z"))
 
+    @property
+    def is_car(self) -> bool:
+        """As in Base: one fixed axle, and steered wheels ahead of or behind it."""
+        return self.believed.wheelbase_m is not None
+
     def ackermann(self, robot: int, speed_m_per_s: float, steering_rad: float, *, acceleration_m_per_s2: float = 0.0,
                   steering_rad_per_s: float = 0.0) -> list[str]:
-        """Drives a car by the angle of a wheel on its middle line; 0 for an acceleration or rate: the scene's limits."""
+        """As in Base; 0 for an acceleration or a rate means the scene's limits."""
         base_m, axle_m = self.believed.wheelbase_m, self.believed.axle_x_m
         assert base_m is not None and axle_m is not None
         curvature = math.tan(steering_rad) / base_m

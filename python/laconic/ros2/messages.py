@@ -36,6 +36,9 @@ geometry_msgs/msg/TwistWithCovariance: geometry_msgs/msg/Twist twist, float64[36
 geometry_msgs/msg/Transform: geometry_msgs/msg/Vector3 translation, geometry_msgs/msg/Quaternion rotation
 geometry_msgs/msg/TransformStamped: std_msgs/msg/Header header, string child_frame_id, \
 geometry_msgs/msg/Transform transform
+ackermann_msgs/msg/AckermannDrive: float32 steering_angle, float32 steering_angle_velocity, float32 speed, \
+float32 acceleration, float32 jerk
+ackermann_msgs/msg/AckermannDriveStamped: std_msgs/msg/Header header, ackermann_msgs/msg/AckermannDrive drive
 tf2_msgs/msg/TFMessage: geometry_msgs/msg/TransformStamped[] transforms
 nav_msgs/msg/Odometry: std_msgs/msg/Header header, string child_frame_id, \
 geometry_msgs/msg/PoseWithCovariance pose, geometry_msgs/msg/TwistWithCovariance twist

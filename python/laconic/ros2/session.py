@@ -18,9 +18,11 @@ from laconic.base.text_file import text_of_file
 from laconic.errors import BadInput, ResultFails
 from laconic.ros2 import FRAMES, USUAL_DISTRIBUTION
 from laconic.ros2.base import Base
+from laconic.ros2.hinged import base_of
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
-from laconic.ros2.node import NANO, Out, RobotNode, Told, diagnostics
+from laconic.ros2.node import RobotNode, Told
+from laconic.ros2.out import NANO, Out, diagnostics
 from laconic.ros2.wire import Participant, check_name, sent
 from laconic.scene import Scene
 from laconic.scene.scene_text import lines_of
@@ -95,7 +97,7 @@ class Session:
         self.scene, self.options, self.clock, self.say = scene, options, clock or Clock(), say
         self.period_s, self.steps = cycle_of(scene, options)
         check_options(options)
-        self.told, self.base = Told(say), Base(scene, options.robots)
+        self.told, self.base = Told(say), base_of(scene, options.robots)
         spread(self.base, options)
         self.base.record, self.base.is_recording = ([], True) if options.record else (None, False)
         self.refusals: dict[int, str] = {}
@@ -338,8 +340,8 @@ def recorded(session: Session, rows: np.ndarray) -> str:
     entries["run"] = {**{key: value for key, value in entries["run"].items() if key != "tolerance"},
                       "duration_s": len(rows) * step_s, "step_s": step_s, "method": session.scene.run.method,
                       "real": session.scene.run.real}
-    entries["input"] = [changes(f"{base.loop.signal}[{wheel + 1}]", rows[:, wheel], step_s)
-                        for wheel in range(rows.shape[1]) if rows[:, wheel].any()]
+    entries["input"] = [changes(signal, column, step_s) for signal, column in zip(base.signals, rows.T, strict=True)
+                        if column.any()]
     if (entries.get("outputs") or {}).get("every_s"):
         entries["outputs"]["every_s"] = step_s
     if not entries["input"]:

@@ -50,7 +50,8 @@ def read_base(table: Table, vehicle: Mapping[str, Any]) -> BaseTable:
             table.fail(name, "has no effect: no wheel of this vehicle is steered; take it out")
     lists = ("believed_radius_m", "joint_names")
     numbers = {each.name: read_number(table, each.name) for each in fields(BaseTable) if each.name not in lists}
-    found = BaseTable(**numbers, believed_radius_m=_radii(table, wheels), joint_names=_names(table, wheels, len(vehicle.get("body", ()))))
+    found = BaseTable(**numbers, believed_radius_m=_radii(table, wheels),
+                      joint_names=_names(table, wheels, len(vehicle.get("body", ()))))
     table.done()
     return found
 
