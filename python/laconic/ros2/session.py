@@ -53,7 +53,7 @@ class Ros2Options:
     speed: float = 1.0
     is_stamped: bool | None = None        # None: both kinds of command
     announces: bool = True
-    has_services: bool = True
+    services_for: Sequence[str] = ("cyclonedds", "fastrtps")  # clients' middlewares
     is_local: bool = False
     shares_tf: bool = False
     frames: Sequence[str] = ()
@@ -106,7 +106,7 @@ class Session:
         self._parent, self._frames = check_name("--namespace", options.namespace), frames_of(options.frames)
         self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
         self.participant = Participant(options.domain, options.distribution, is_local=options.is_local,
-                                       announces=options.announces)
+                                       announces=options.announces, middlewares=options.services_for)
         try:
             self._join()
         except BaseException:
@@ -134,7 +134,7 @@ class Session:
                          is_sim_time=options.is_sim_time, is_stamped=options.is_stamped,
                          has_map=options.is_loopback or self.map is not None, shares_tf=options.shares_tf,
                          told=self.told, rate_Hz=options.rate_Hz, description=text,
-                         has_services=options.has_services)
+                         has_services=bool(options.services_for))
         if text is not None and number == 0:
             lacking = [name for name in node.joint_names if f'"{name}"' not in text]
             if lacking:
@@ -187,6 +187,7 @@ class Session:
         if self._is_due("services", now_s, HOUSEKEEPING_S):
             for robot in self.robots:
                 robot.answer(now_s)
+            self.participant.answer()
             for number in [*self.refusals]:
                 if not self.base.motion.has_refused(number):  # it was reset or placed
                     del self.refusals[number]

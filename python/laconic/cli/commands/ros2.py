@@ -19,10 +19,9 @@ if TYPE_CHECKING:
 
 
 @click.command("ros2")
-@click.argument("scene_name", type=SceneName(), metavar="SCENE")
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="SCENE")
 @one_of("--distro", tuple(GID_BYTES), "Distribution of the peers, instead of ROS_DISTRO or jazzy")
-@one_of("--rmw", tuple(MIDDLEWARES), "Middleware of the peers, instead of RMW_IMPLEMENTATION or cyclonedds; fastrtps "
-        "leaves out services")
+@one_of("--rmw", tuple(MIDDLEWARES), "Answer services of this middleware alone, instead of RMW_IMPLEMENTATION or both")
 @click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
 @click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
@@ -62,7 +61,7 @@ def command(scene_name: str, distro: str | None, rmw: str | None, domain: int | 
     check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s)
     options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent,
-                          has_services=middleware_of(rmw) != "fastrtps", **given)
+                          services_for=middlewares_of(rmw), **given)
 
     def say(text: str) -> None:
         click.echo(text, err=json_wanted)
@@ -91,10 +90,11 @@ def distribution_of(given: str | None) -> str:
     return given or (of_environment if of_environment in GID_BYTES else USUAL_DISTRIBUTION)
 
 
-def middleware_of(given: str | None) -> str:
-    """The middleware of the command line, or that of the environment where it is known."""
+def middlewares_of(given: str | None) -> tuple[str, ...]:
+    """The middleware of the command line, or that of the environment where it is known; else all."""
     of_environment = os.environ.get("RMW_IMPLEMENTATION", "")
-    return given or next((name for name, package in MIDDLEWARES.items() if package == of_environment), "cyclonedds")
+    known = [name for name, package in MIDDLEWARES.items() if package == of_environment]
+    return (given,) if given else tuple(known or MIDDLEWARES)
 
 
 def domain_of(given: int | None) -> int:
