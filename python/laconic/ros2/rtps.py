@@ -342,7 +342,7 @@ class Services:
         """Another endpoint is announced, or goes."""
         found = dict(parameters_of(each.payload))
         guid, topic = found.get(0x005A, b"")[:16], found.get(0x0005, b"")[4:].split(b"\0")[0].decode(errors="replace")
-        for server in self.servers:
+        for server in self.servers if guid[:12] == each.prefix else ():
             if each.writer == SUBSCRIPTIONS:
                 if each.status & 3:
                     server.writer.readers.pop(guid, None)
@@ -437,6 +437,6 @@ def own_address() -> str:
 
 def address_of(value: bytes) -> tuple[str, int] | None:
     """Host and port of a UDP locator; None for another kind."""
-    if len(value) < 24 or value[0] != 1:
+    if len(value) < 24 or value[0] != 1 or not 0 < number_of(value[4:8]) < 65536:
         return None
     return socket.inet_ntoa(value[20:24]), number_of(value[4:8])
