@@ -20,7 +20,8 @@ import laconic
 from laconic.errors import BadInput
 from laconic.ros2.maps import Map
 from laconic.ros2.messages import new, type_hash
-from laconic.ros2.wire import LATCHED, USUAL, Participant, polled
+from laconic.ros2.names import LATCHED, USUAL, polled
+from laconic.ros2.wire import Participant
 from laconic.scene import read_scene
 from ros2_support import DOMAIN, announced, last, rig_of
 

@@ -17,9 +17,9 @@ import made_up_robots
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.ros2.messages import new, type_hash
+from laconic.ros2.names import LATCHED, Quality, check_name, polled, ros_type
 from laconic.ros2.packets import HERE
 from laconic.ros2.session import Ros2Options, Session, write_record
-from laconic.ros2.wire import LATCHED, Quality, check_name, polled, ros_type
 from laconic.scene import build_scene, read_scene
 from laconic.scene.scene_tables import scene_tables
 from ros2_support import DOMAIN, WALL_NS, announced, last, rig_of

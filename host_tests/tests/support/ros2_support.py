@@ -12,8 +12,9 @@ from typing import Any
 from cyclonedds.builtin import BuiltinDataReader
 
 from laconic.ros2.messages import message_class, new
+from laconic.ros2.names import USUAL, polled, topic_name
 from laconic.ros2.session import Clock, Ros2Options, Session
-from laconic.ros2.wire import Node, Participant, polled, topic_name
+from laconic.ros2.wire import Node, Participant
 from laconic.scene import Scene, read_scene
 
 DOMAIN = 77
@@ -71,8 +72,6 @@ class Rig:
         make, participant = self.peer._endpoint, self.peer
         from cyclonedds.pub import DataWriter
         from cyclonedds.sub import DataReader
-
-        from laconic.ros2.wire import USUAL
 
         writer = make(DataWriter, topic_name("rq", "/", service, "Request"), request, USUAL, of_service="clientid=1;")
         reader = make(DataReader, topic_name("rr", "/", service, "Reply"), response, USUAL, of_service="clientid=1;")

@@ -12,18 +12,18 @@ from laconic.core.articulated import CARRIAGE
 from laconic.ros2.base import Base
 from laconic.ros2.messages import dds_name, new
 from laconic.ros2.motion import GRAVITY_M_PER_S2, Seen
-from laconic.ros2.out import NANO, SURE, OdometryOut, Out, between, transform, upright
-from laconic.ros2.wire import (
+from laconic.ros2.names import (
     LATCHED,
     TRANSFORMS,
     USUAL,
-    Node,
-    Participant,
+    Middleware,
     Quality,
+    RosNode,
     polled,
     ros_type,
     topic_name,
 )
+from laconic.ros2.out import NANO, SURE, OdometryOut, Out, between, transform, upright
 
 DRIVE_TOPICS = ("ackermann_cmd", "drive")  # of cars: those of VESC's stack and of f1tenth_gym_ros
 ACKERMANN = "ackermann_msgs/msg/AckermannDriveStamped"
@@ -69,12 +69,12 @@ class Command:
 class RobotNode:
     """One robot of a base as a node."""
 
-    def __init__(self, participant: Participant, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
+    def __init__(self, participant: Middleware, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
                  is_sim_time: bool, is_stamped: bool | None, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
                  description: str | None = None,
                  has_services: bool = True):
         self.base, self.robot, self.told = base, robot, told
-        self.node: Node = participant.node(NODE_NAME, namespace)
+        self.node: RosNode = participant.node(NODE_NAME, namespace)
         prefix = f"{namespace.strip('/')}/" if shares_tf and namespace != "/" else ""
         self.frames = {name: frame if name == "map" else prefix + frame for name, frame in frames.items()}
         self.command, self.watchdog_s, self.heading_rad = Command(), base.table.watchdog_s, 0.0

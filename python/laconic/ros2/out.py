@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from laconic.ros2.messages import Packed, new
-from laconic.ros2.wire import USUAL, Node, Quality, sent
+from laconic.ros2.names import USUAL, Quality, RosNode, sent
 
 ODOMETRY, TRANSFORM = "nav_msgs/msg/Odometry", "geometry_msgs/msg/TransformStamped"
 SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and across, yaw rate, out of the plane
@@ -17,7 +17,7 @@ NANO = 10**9
 class Out:
     """A publisher of a packed message with a stamp."""
 
-    def __init__(self, node: Node, topic: str, kind: str, message: Any, quality: Quality = USUAL,
+    def __init__(self, node: RosNode, topic: str, kind: str, message: Any, quality: Quality = USUAL,
                  stamps: Sequence[str] = ("header.stamp",)):
         self.packed = Packed(kind, message)
         self._writer, self._message = node.publisher(topic, kind, quality), self.packed.message
@@ -34,7 +34,7 @@ class Out:
 class OdometryOut:
     """A publisher of nav_msgs/Odometry."""
 
-    def __init__(self, node: Node, topic: str, frame: str, child: str, variance: float, quality: Quality):
+    def __init__(self, node: RosNode, topic: str, frame: str, child: str, variance: float, quality: Quality):
         message = new(ODOMETRY, child_frame_id=child)
         message.header.frame_id = frame
         if variance:

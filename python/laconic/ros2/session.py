@@ -21,9 +21,9 @@ from laconic.ros2.base import Base
 from laconic.ros2.hinged import base_of
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
+from laconic.ros2.names import Middleware, check_name, sent
 from laconic.ros2.node import RobotNode, Told
 from laconic.ros2.out import NANO, Out, diagnostics
-from laconic.ros2.wire import Participant, check_name, sent
 from laconic.scene import Scene
 from laconic.scene.scene_text import lines_of
 from laconic.scene.table import read_toml
@@ -55,6 +55,8 @@ class Ros2Options:
     announces: bool = True
     services_for: Sequence[str] = ("cyclonedds", "fastrtps")  # clients' middlewares
     is_local: bool = False
+    router: str = "tcp/localhost:7447"
+    listen: str = ""
     shares_tf: bool = False
     frames: Sequence[str] = ()
     duration_s: float | None = None
@@ -105,8 +107,7 @@ class Session:
         self.map = Map.read(options.map_file) if options.map_file else None
         self._parent, self._frames = check_name("--namespace", options.namespace), frames_of(options.frames)
         self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
-        self.participant = Participant(options.domain, options.distribution, is_local=options.is_local,
-                                       announces=options.announces, middlewares=options.services_for)
+        self.participant = middleware_of(options)
         try:
             self._join()
         except BaseException:
@@ -260,6 +261,19 @@ class Session:
                 "skipped_s": self.lateness.skipped_s, **self.lateness.figures(),
                 "final": {"x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad},
                 "events": dict(self.told.counts)}
+
+
+def middleware_of(options: Ros2Options) -> Middleware:
+    """A participant of DDS, or a session of Zenoh; only that package must be there."""
+    if "zenoh" in options.services_for:
+        from laconic.ros2.zenoh import Context
+
+        return Context(options.domain, options.distribution, is_local=options.is_local, announces=options.announces,
+                       router=options.router, listen=options.listen)
+    from laconic.ros2.wire import Participant
+
+    return Participant(options.domain, options.distribution, is_local=options.is_local, announces=options.announces,
+                       middlewares=options.services_for)
 
 
 # ---- what can be checked beforehand

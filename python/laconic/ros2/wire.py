@@ -6,7 +6,6 @@ DDS is PyPI's cyclonedds. Everything is polled from one thread, so that a run do
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -24,13 +23,11 @@ from cyclonedds.util import duration
 from laconic.errors import BadInput
 from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION, WITHOUT_HASHES
 from laconic.ros2.messages import dds_name, message_class, type_hash
+from laconic.ros2.names import LATCHED, MOST_AT_ONCE, MOST_DOMAIN, USUAL, Quality, polled, sent, topic_name
 from laconic.ros2.packets import OF_FAST
 from laconic.ros2.rtps import Guid, Services
 
-MOST_DOMAIN = 232  # beyond it the ports of UDP end
-NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
-MOST_AT_ONCE = 64  # messages of one reader in one poll
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
 </Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>
@@ -39,32 +36,6 @@ THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInte
 """Discovery by unicast on this machine alone, as ROS 2 does for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
 
 _DOMAINS: dict[int, Domain] = {}  # of this process, which may configure each of them once
-
-
-@dataclass(frozen=True)
-class Quality:
-    """Quality of service by ROS's names; writers offer RELIABLE, which matches every reader."""
-
-    depth: int = 10
-    is_latched: bool = False
-
-
-USUAL, LATCHED, TRANSFORMS = Quality(), Quality(depth=1, is_latched=True), Quality(depth=100)
-
-
-def check_name(option: str, name: str) -> str:
-    """A namespace or a name with a leading slash; BadInput for what ROS does not allow."""
-    parts = name.strip("/").split("/") if name.strip("/") else []
-    if "//" in name or not all(NAME.fullmatch(part) for part in parts):
-        raise BadInput(f"{option}: {name} is not a name of ROS; give letters, digits and _ that begin with a letter, "
-                       "such as robot1")
-    return "/" + "/".join(parts)
-
-
-def topic_name(prefix: str, namespace: str, topic: str, suffix: str = "") -> str:
-    """The DDS name of a topic or service: rt/robot1/odom; a name with a leading slash is not in the namespace."""
-    full = topic if topic.startswith("/") else f"{namespace.rstrip('/')}/{topic}"
-    return f"{prefix}{full}{suffix}"
 
 
 class Participant:
@@ -291,37 +262,3 @@ class Service:
         assert self.reader is not None
         writer = self.reader.get_matched_publication_data(request.sample_info.publication_handle)
         return writer is not None and writer.key.bytes[:2] == OF_FAST
-
-
-def polled(reader: Any, wrong: Callable[[], None] = lambda: None, most: int = MOST_AT_ONCE) -> list[Any]:
-    """What has come since the last poll, at most so many; calls `wrong` for each message that cannot be read."""
-    found = []
-    for _ in range(most):
-        try:
-            taken = reader.take(N=1)
-        except DDSException:
-            break
-        except Exception:  # whatever cyclonedds raises for bytes that are not this type
-            wrong()
-            continue
-        if not taken:
-            break
-        if hasattr(taken[0], "__idl__"):  # no news of a writer that has gone
-            found.append(taken[0])
-    return found
-
-
-def sent(writer: Any, message: Any) -> bool:
-    """Writes a message; False where a reader does not keep up, so that the message is left out."""
-    try:
-        writer.write(message)
-    except DDSException:
-        return False
-    return True
-
-
-def ros_type(name: str) -> str:
-    """The ROS name of a type on the wire; as it is where it is not ROS's."""
-    parts = name.split("::")
-    is_ros = len(parts) == 4 and parts[2] == "dds_" and parts[3].endswith("_")
-    return f"{parts[0]}/{parts[1]}/{parts[3][:-1]}" if is_ros else name

@@ -11,7 +11,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, json_flag, one_of
 from laconic.errors import BadInput, ResultFails
-from laconic.ros2 import GID_BYTES, MIDDLEWARES, USUAL_DISTRIBUTION
+from laconic.ros2 import GID_BYTES, MIDDLEWARES, OF_DDS, USUAL_DISTRIBUTION
 from laconic.scene import METHODS, read_scene
 
 if TYPE_CHECKING:
@@ -21,9 +21,12 @@ if TYPE_CHECKING:
 @click.command("ros2")
 @click.argument("scene_name", type=SceneName(hinges=True), metavar="SCENE")
 @one_of("--distro", tuple(GID_BYTES), "Distribution of the peers, instead of ROS_DISTRO or jazzy")
-@one_of("--rmw", tuple(MIDDLEWARES), "Answer services of this middleware alone, instead of RMW_IMPLEMENTATION or both")
+@one_of("--rmw", tuple(MIDDLEWARES), "Middleware of the peers, instead of RMW_IMPLEMENTATION or "
+        "both of DDS; zenoh is experimental")
 @click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
 @click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
+@click.option("--router", default="tcp/localhost:7447", metavar="ENDPOINT", show_default=True,
+              help="With --rmw zenoh: where to connect.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
 @click.option("--robots", type=int, default=1, help="So many robots, in namespaces robot1, robot2 …")
 @click.option("--spacing", "spacing_m", type=float, default=1.0, metavar="METRES", help="Between them at the start.")
@@ -91,10 +94,10 @@ def distribution_of(given: str | None) -> str:
 
 
 def middlewares_of(given: str | None) -> tuple[str, ...]:
-    """The middleware of the command line, or that of the environment where it is known; else all."""
+    """The middleware of the command line, or that of the environment where it is known; else both of DDS."""
     of_environment = os.environ.get("RMW_IMPLEMENTATION", "")
     known = [name for name, package in MIDDLEWARES.items() if package == of_environment]
-    return (given,) if given else tuple(known or MIDDLEWARES)
+    return (given,) if given else tuple(known or OF_DDS)
 
 
 def domain_of(given: int | None) -> int:
