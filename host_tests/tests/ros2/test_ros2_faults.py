@@ -246,6 +246,18 @@ def test_the_scan_shows_the_walls_of_the_map(tmp_path: Path) -> None:
             assert at[degrees] == pytest.approx(distance, abs=0.06)
 
 
+@pytest.mark.parametrize("place, yaw", [(math.nan, 1.0), (1e300, 1.0), (0.0, 1e300), (0.0, math.inf), (0.0, 0.0)])
+def test_a_pose_that_cannot_be_is_told_and_ignored(place: float, yaw: float) -> None:
+    with rig_of(is_loopback=True) as rig:
+        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
+        pose.pose.pose.position.x, pose.pose.pose.orientation.z, pose.pose.pose.orientation.w = place, yaw, 0.0
+        rig.node.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped").write(pose)
+        rig.turn(2)
+        assert rig.lines == ["/laconic: initialpose has a pose that is infinite, NaN, beyond 1e+06 or without a yaw, "
+                             "and is ignored"]
+        assert rig.session.base.look()[0].x_m == 0.0
+
+
 def test_outside_the_map_a_scan_hits_nothing(tmp_path: Path) -> None:
     world = Map.read(box_map(tmp_path))
     assert np.isinf(world.ranges(50.0, 50.0, np.array([0.0, 1.0]))).all()

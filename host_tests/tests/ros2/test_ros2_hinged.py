@@ -124,12 +124,37 @@ def test_a_car_does_not_turn_on_the_spot_and_a_tricycle_does() -> None:
     assert base.look()[0].velocity == pytest.approx((0.0, 0.0, 0.5), abs=2e-3)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["f1tenth", "frc_swerve_mk4i", "tricycle_agv"])
+def test_the_smallest_of_all_commands_is_a_command(name: str) -> None:
+    base = hinged_base(name)
+    for command in ((5e-324, 0.0, 0.0), (0.0, 0.0, 5e-324), (1e-200, 1e-200, 1e-200), (0.2, 0.0, 0.0)):
+        driven(base, 0.5, *command)
+    assert base.look()[0].velocity[0] == pytest.approx(0.2, abs=0.02)
+
+
 def test_a_swerve_drive_turns_its_wheels_the_shorter_way() -> None:
     base = hinged_base("frc_swerve_mk4i")
     driven(base, 1.0, 0.5, 0.0, 0.0)
     driven(base, 1.0, -0.5, 0.02, 0.0)
     seen = base.look()[0]
     assert max(map(abs, seen.hinge_rad)) < 0.1 and seen.velocity == pytest.approx((-0.5, 0.02, 0.0), abs=2e-3)
+
+
+@pytest.mark.parametrize("first, second", [((0.0, 0.0, 1.0), (0.5, 0.5, 0.5)), ((0.0, 0.0, -1.0), (0.5, -0.5, 0.6)),
+                                           ((0.5, 0.0, 0.0), (0.0, 0.0, 1.0)), ((0.3, 0.3, 1.0), (-0.3, -0.3, 1.0))])
+def test_a_swerve_drive_keeps_turning_centres_out_of_its_wheels(first: tuple[float, ...], second: tuple[float, ...]
+                                                                ) -> None:
+    base = hinged_base("frc_swerve_mk4i")
+    for command in (first, second, first):
+        assert driven(base, 3.0, *command) == []
+        assert base.look()[0].velocity == pytest.approx(command, abs=5e-3)
+
+
+def test_a_turning_centre_in_a_wheel_is_moved_and_told() -> None:
+    base = hinged_base("frc_swerve_mk4i")
+    assert driven(base, 3.0, 0.26, -0.26, 1.0) == ["a turning centre in a steered wheel is moved beside it"]
+    assert base.look()[0].velocity == pytest.approx((0.26, -0.26, 1.0), abs=0.02)
 
 
 def test_a_wrong_wheelbase_makes_a_car_turn_less_than_it_believes() -> None:

@@ -85,7 +85,7 @@ class Rig:
 @contextmanager
 def rig_of(scene: str | Scene = "turtlebot3_burger", **options: Any) -> Iterator[Rig]:
     """A rig of a scene, whose session and peer leave the domain at the end."""
-    time, lines = Virtual(), []
+    time, lines = Virtual(), list[str]()
     given = Ros2Options(**{"domain": DOMAIN, "is_local": True, **options})
     made = scene if isinstance(scene, Scene) else read_scene(scene)
     with Session(made, given, lines.append, time.clock()) as session, \

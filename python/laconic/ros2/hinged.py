@@ -30,6 +30,8 @@ STEERING_RAD_PER_S = 10.0    # of a hinge whose scene gives no limit, as small s
 BANDWIDTH_RAD_PER_S = 8.0    # of a steering motor's controller, which is damped critically
 INSET_RAD = 1e-6             # what the base keeps away from a stop, so that the scene's own limits never act
 OF_MOTOR_RAD = 5e-3          # the same where a motor steers, which may pass its goal
+CLEAR_RAD = 0.02             # of a turning centre from a steered wheel, in twists scaled by the vehicle's length
+AROUND_RAD = 0.1             # the same on the way to another twist
 SHARE = 1.0 - 1e-9           # of a rate limit, for the same reason
 HALVINGS = 30
 MARGIN_S = 0.02              # between looks at what the ground must give
@@ -62,6 +64,7 @@ class Steering:
         self._highs = np.array([each.high_rad - INSET_RAD for each in self._coordinated])
         self._motors = {each.name: self._motor(scene, each.at) for each in self._singly if each.kind == "motor"}
         self._scale = np.array([1.0, 1.0, chassis.length_m])
+        self._poles = _poles(self._places, self._scale) if chassis.axle_x_m is None else np.zeros((0, 3))
 
     @property
     def signals(self) -> list[str]:
@@ -93,7 +96,8 @@ class Steering:
     def _turn(self, angles: np.ndarray, rate_limit: float) -> None:
         """Takes the twist of coordinated hinges as far towards the goal as rates and stops allow in one step."""
         mine = angles[[each.at for each in self._coordinated]]
-        targets = [unit(sign * self.goal, self._scale) for sign in (1.0, -1.0)]
+        goal = self.clear(self.goal)
+        targets = [self._via(unit(sign * goal, self._scale)) for sign in (1.0, -1.0)]
         turns = [self._turns(self.twist, each) for each in targets]
         ways = sorted(range(2), key=lambda k: (bool(self._beyond(mine + turns[k])), float(np.abs(turns[k]).max())))
         target, turn = targets[ways[0]], turns[ways[0]]
@@ -111,6 +115,41 @@ class Steering:
             low, high = (low, middle) if is_far else (middle, high)
         if low:
             self.twist = unit(self.twist + low * (target - self.twist), self._scale)
+
+    def clear(self, twist: np.ndarray) -> np.ndarray:
+        """The twist, or one beside it, about whose centre every steered wheel can point."""
+        made = unit(twist, self._scale) * self._scale
+        for pole in self._poles:
+            along = float(made @ pole)
+            if along > math.cos(CLEAR_RAD):
+                aside = made - along * pole
+                if np.linalg.norm(aside) < 1e-9:
+                    aside = np.cross(pole, [1.0, 0.0, 0.0] if abs(pole[0]) < 0.9 else [0.0, 1.0, 0.0])
+                made = math.cos(CLEAR_RAD) * pole + math.sin(CLEAR_RAD) * aside / np.linalg.norm(aside)
+                return np.asarray(made / self._scale)
+        return twist
+
+    def _via(self, target: np.ndarray) -> np.ndarray:
+        """The target, or where to go first, so that on the way no turning centre lies in a steered wheel.
+
+        Twists of one size are points on a sphere, and those that leave a wheel without a direction its poles."""
+        now, goal = self.twist * self._scale, target * self._scale
+        axis = np.cross(now, goal)
+        size = float(np.linalg.norm(axis))
+        if size < 1e-9 or not len(self._poles):
+            return target
+        axis /= size
+        ahead, first, found = np.cross(axis, now), math.atan2(size, float(now @ goal)), target
+        for pole in self._poles:
+            off = float(axis @ pole)
+            wide = min(AROUND_RAD, 0.5 * math.acos(min(max(float(goal @ pole), -1.0), 1.0)))
+            along = math.atan2(float(pole @ ahead), float(pole @ now))
+            if abs(off) < wide and 0.0 < along < first:
+                aside = math.copysign(1.0, -off) * (axis - off * pole)
+                aside /= np.linalg.norm(aside)
+                first = along
+                found = (math.cos(1.2 * wide) * pole + math.sin(1.2 * wide) * aside) / self._scale
+        return found
 
     def _beyond(self, angles: np.ndarray) -> bool:
         return bool(((angles > self._highs) | (angles < self._lows)).any())
@@ -141,9 +180,17 @@ class Steering:
         return min(max(proportional * way - derivative * rate, -self._most_V), self._most_V)
 
 
+def _poles(places: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Twists about each place, both ways, of size 1 in the scaled metric."""
+    found = np.array([(place.imag, -place.real, 1.0) for place in places]).reshape(-1, 3) * scale
+    found /= np.linalg.norm(found, axis=1, keepdims=True)
+    return np.concatenate([found, -found])
+
+
 def unit(twist: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """The twist of size 1 in that metric."""
-    return np.asarray(twist / np.linalg.norm(twist * scale))
+    made = twist / float(np.abs(twist).max())  # first, as squares of the smallest numbers are 0
+    return np.asarray(made / np.linalg.norm(made * scale))
 
 
 class Hinged:
@@ -354,8 +401,10 @@ class HingedBase(Base):
                    for name, asked, got in zip(names, given, np.round(wanted, 9) + 0.0, strict=False)
                    if abs(asked - got) > 1e-6]
         remarks += self._limit(wanted)
+        if wanted.any() and (each.steering.clear(wanted) != wanted).any():
+            remarks.append("a turning centre in a steered wheel is moved beside it")
         if wanted.any():
-            each.steering.goal = wanted.copy()
+            each.steering.goal = wanted / float(np.abs(wanted).max())
         self._wanted[:, robot] = wanted
         self._rate_limit[robot] = self._own_ramps[robot] = math.inf
         return remarks

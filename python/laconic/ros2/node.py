@@ -32,6 +32,7 @@ POSE_STAMPED = "geometry_msgs/msg/PoseWithCovarianceStamped"
 NODE_NAME = "laconic"
 OK, WARN, ERROR, STALE = range(4)   # levels of diagnostics
 KEPT_S = 0.25                       # of each topic, for peers that have lost a packet
+FURTHEST = 1e6                      # m of a pose
 LARGEST = 1e4                       # m/s or rad/s of a command
 
 # rcl_interfaces/msg/ParameterType
@@ -257,8 +258,9 @@ class RobotNode:
     def _move(self, pose: Any, who: str, now_s: float) -> bool:
         turn = pose.orientation
         numbers = (pose.position.x, pose.position.y, turn.x, turn.y, turn.z, turn.w)
-        if not all(map(math.isfinite, numbers)) or turn.z**2 + turn.w**2 < 1e-12:
-            self._tell(now_s, "bad pose", f"{who} has a pose that is not finite or has no yaw, and is ignored")
+        if not all(abs(each) <= FURTHEST for each in numbers) or turn.z**2 + turn.w**2 < 1e-12:  # NaN is not, either
+            self._tell(now_s, "bad pose", f"{who} has a pose that is infinite, NaN, beyond {FURTHEST:g} or without a "
+                       "yaw, and is ignored")
             return False
         yaw = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
         self.base.place(self.robot, pose.position.x, pose.position.y, yaw)
