@@ -91,9 +91,8 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     outputs = top.table("outputs")
     signals = read_hinge_signals(outputs, output_signals_of(vehicle, hinges))
     parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
-    if top.has("base"):
-        top.fail("base", "is for laconic ros2, which does not take vehicles with hinges yet; take the table out")
-    parts["sensors"], parts["base"] = NO_SENSORS, None
+    parts["base"] = read_base(top.table("base"), vehicle) if top.has("base") else None
+    parts["sensors"] = NO_SENSORS
     parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"])
     top.done()
     return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
