@@ -31,8 +31,8 @@ class SameBits(Trial):
 
     def judge_it(self, judgement: Judgement) -> None:
         run, count = self.run, self.scene.wheel_count
-        theirs = twin_states(self.scene, run)
-        parts = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
+        theirs = run.hinged_states if run.hinged else twin_states(self.scene, run)
+        parts = run.hinged.parts() if run.hinged else {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
                  "wheel_angle": slice(6 + count, 6 + 2 * count)}
         if has_sensors(self.scene):
             end = 6 + 2 * count

@@ -31,7 +31,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 
 
 @click.command("rig")
-@click.argument("scene_name", type=SceneName(), metavar="[SCENE]", required=False)
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="[SCENE]", required=False)
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
 @click.option("--channel", help="Channel of the interface: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
