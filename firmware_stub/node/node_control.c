@@ -156,11 +156,14 @@ laconic_node_result laconic_node_parameter(laconic_node *node, const uint8_t *da
     return answer;
 }
 
-/* The loaded vehicle without hinges becomes the node's, or nothing changes. */
-static uint8_t adopt_plain(laconic_node *node, uint8_t *field, uint8_t *item) {
+/* The loaded parameters become the vehicle, or nothing changes. */
+static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     const laconic_parameters *new = &node->loader.parameters;
     const laconic_method *method = node->config.method(new->method);
     laconic_refusal why = {0};
+#if LACONIC_NODE_WITH_HINGES
+    if (new->bodies.body_count != 0) return laconic_node_adopt_hinges(node, field, item);
+#endif
     if (method == NULL) {
         *field = LACONIC_FIELD_METHOD;
         return LACONIC_METHOD_UNKNOWN;
@@ -191,21 +194,6 @@ static uint8_t adopt_plain(laconic_node *node, uint8_t *field, uint8_t *item) {
     laconic_node_drop_hinges(node);
 #endif
     node->start = new->start;
-    return 0;
-}
-
-/* The loaded parameters become the vehicle, or nothing changes. */
-static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
-#if LACONIC_NODE_WITH_HINGES
-    const bool hinged = node->loader.parameters.bodies.body_count != 0;
-    const uint8_t status = hinged ? laconic_node_adopt_hinges(node, field, item) : adopt_plain(node, field, item);
-#if LACONIC_NODE_WITH_ESTIMATE
-    if (hinged && status == 0) node->estimates = false;
-#endif
-#else
-    const uint8_t status = adopt_plain(node, field, item);
-#endif
-    if (status != 0) return status;
     node->model_is_wrong = false;
     node->state = LACONIC_WIRE_STATE_READY;
     laconic_node_clear_inputs(node);

@@ -44,7 +44,8 @@ static laconic_status find(laconic_node_hinges *found, const laconic_parameters 
     found->start.x_m = new->start.x_m;
     found->start.y_m = new->start.y_m;
     found->start.heading_rad = new->start.heading_rad;
-    memcpy(found->first.hinge_rate_rad_per_s, new->bodies.hinge_rate_rad_per_s, sizeof new->bodies.hinge_rate_rad_per_s);
+    memcpy(found->first.hinge_rate_rad_per_s, new->bodies.hinge_rate_rad_per_s,
+           sizeof new->bodies.hinge_rate_rad_per_s);
     memcpy(found->first.twist, new->bodies.twist, sizeof new->bodies.twist);
     return set_start(found, why);
 }
@@ -74,6 +75,12 @@ static void adopt(laconic_node *node, const laconic_node_hinges *found) {
 #if LACONIC_NODE_WITH_DRIVES
     node->drive_plan = node->loader.parameters.drives;
 #endif
+#if LACONIC_NODE_WITH_ESTIMATE
+    node->estimates = false;
+#endif
+    node->model_is_wrong = false;
+    node->state = LACONIC_WIRE_STATE_READY;
+    laconic_node_clear_inputs(node);
 }
 
 uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *item) {
@@ -203,7 +210,8 @@ bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t 
                                                 : LACONIC_WIRE_STEERING_HINGE_RATE_1_PER_UNIT;
     laconic_real number[3];
     for (int k = 0; k < 3; k++) number[k] = (laconic_real)raw[k] / (laconic_real)per_unit;
-    if (!node->hinges.here || page > TWIST_PAGE || (page == TWIST_PAGE && !node->hinges.model.coordinated)) return false;
+    if (!node->hinges.here || page > TWIST_PAGE || (page == TWIST_PAGE && !node->hinges.model.coordinated))
+        return false;
     if (page == TWIST_PAGE) {
         set_twist(&node->hinges, number);
     } else if (!set_three(&node->hinges, voltages, 3 * (int32_t)(page % 3U), number)) {

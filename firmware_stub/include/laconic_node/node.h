@@ -86,10 +86,10 @@ typedef struct laconic_node_hinges {
     laconic_articulated_model model;
     laconic_articulated_integrator integrator;
     laconic_articulated_state state;
-    laconic_real twist[3];               /* at the end of the last step                           */
-    laconic_articulated_start start;     /* RESET returns to it, with `first` …                   */
-    laconic_articulated_input first;     /* … commanded                                           */
-    laconic_articulated_input input[2];  /* at the start and the end of the next step; their `base`
+    laconic_real twist[3];              /* at the end of the last step                           */
+    laconic_articulated_start start;    /* RESET returns to it, with `first` …                   */
+    laconic_articulated_input first;    /* … commanded                                           */
+    laconic_articulated_input input[2]; /* at the start and the end of the next step; their `base`
                                             is that of laconic_node.input                         */
 } laconic_node_hinges;
 

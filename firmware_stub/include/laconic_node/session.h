@@ -16,7 +16,7 @@ typedef struct laconic_node_session {
     uint32_t number, key, run_key;
     /* of the last right frame, behind those of all nodes that of STEERING; 0: none since OPEN or START               */
     uint32_t count[LACONIC_WIRE_RIG_OFFSETS + LACONIC_NODE_WITH_HINGES];
-    uint32_t armed, deaf;                     /* motion frames, bit = offset: the last one was right; was refused    */
+    uint32_t armed, deaf; /* motion frames, bit = offset: the last one was right; was refused    */
 } laconic_node_session;
 
 #endif

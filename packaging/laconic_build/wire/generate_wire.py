@@ -156,7 +156,7 @@ extern const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS];
 extern const uint8_t laconic_wire_data_ids[LACONIC_WIRE_CLASSIC][16]; /* profile 22 */
 uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 
-/* Whether the rig sends the frame with that offset: to a node with hinges also STEERING, which lies among the node's. */
+/* Whether the rig sends the frame with that offset: to a node with hinges also STEERING, among the node's. */
 #define LACONIC_WIRE_FROM_RIG(offset) \\
     ((offset) < LACONIC_WIRE_RIG_OFFSETS || (LACONIC_NODE_WITH_HINGES && (offset) == LACONIC_WIRE_STEERING))
 

@@ -13,7 +13,7 @@ from laconic.can.rig.errors import RunEnds
 from laconic.can.rig.parameters import Parameter, vehicle_parameters
 from laconic.can.rig.wire import WHEELS_A_GROUP, Frame, wire
 from laconic.core.articulated import ArticulatedPlant, method_names
-from laconic.core.articulated_input import member_of, row_length
+from laconic.core.articulated_input import member_of
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
 from laconic.simulation.articulated import follow_rows, given_start, start_plant
@@ -167,8 +167,7 @@ def values_with_hinges(plant: ArticulatedPlant, frame: Frame, group: int) -> dic
 
 
 class Steering:
-    """Sends the scaled commands of hinges behind the voltages of a step; returns the inputs that the node makes of both,
-    at the start and end of the step."""
+    """Sends the scaled commands of hinges behind the voltages of a step."""
 
     def __init__(self, node: NodeClient, twin: HingedTwin):
         self.node, self.core, self.overranges = node, twin.core, 0
@@ -182,7 +181,8 @@ class Steering:
         self.pages += [TWIST_PAGE] if twin.vehicle.is_coordinated else []
 
     def send(self, wanted: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """`wanted`: inputs at the start and end of the step, as rows; `base`: what the node makes of the voltages."""
+        """Inputs that the node makes of all, at the start and end of the step. `wanted`: those of the scene; `base`:
+        what the node makes of the voltages."""
         start, end = self._now.copy(), self._now.copy()
         start[: len(base)] = end[: len(base)] = base
         for page in self.pages:
@@ -256,8 +256,3 @@ def raw_groups(twin: HingedTwin) -> list[str]:
     chosen = {"take_hinge_voltage": "hinge_voltage_V" in names, "take_hinge_torque": "hinge_torque_Nm" in names,
               "take_hinge_rate": "prescribed" in kinds, "take_twist": "coordinated" in kinds}
     return [bit for bit, is_chosen in chosen.items() if is_chosen]
-
-
-def length_of_rows(twin: HingedTwin) -> int:
-    """Numbers of a row of inputs."""
-    return row_length(twin.core)
