@@ -12,6 +12,7 @@ from laconic.base.paths import SOURCE_DIR
 from laconic.core import Field, load
 
 from .drive_parameters import drive_parameters
+from .hinge_parameters import hinge_parameters
 from .sensor_parameters import sensor_parameters
 
 NEEDS = {
@@ -59,4 +60,4 @@ PARAMETERS = {
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
     "DRIVE_FAULTS": ("an order while the node plays, see Drives", "integer", WHEEL, "not of a vehicle"),
-} | taken() | drive_parameters() | sensor_parameters()
+} | taken() | drive_parameters() | sensor_parameters() | hinge_parameters()
