@@ -29,7 +29,7 @@ typedef struct location {
 #define IN_START(member) 0, 0, AT(start.member)
 #define IN_RUN(member) 0, 0, AT(member)
 #define IN_DRIVES(member) 0, 0, AT(drives.member)
-#define IN_DRIVES_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_drive_settings), AT(drives.drive[0].member)
+#define IN_DRIVES_WHEEL(member) LACONIC_DRIVE_AXES, sizeof(laconic_drive_settings), AT(drives.drive[0].member)
 #define IN_IMU(member) 0, 0, AT(sensors.imu.member)
 #define IN_IMU_ARRAY(member) 2, sizeof(laconic_real), AT(sensors.imu.member)
 #define IN_ENCODER(member) 0, 0, AT(sensors.encoder_##member)

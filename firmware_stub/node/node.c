@@ -93,6 +93,9 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
 
 /* A controller of drives has the bus for itself, unless a rig asks for frames. */
 static bool is_silent(const laconic_node *node) {
+#if LACONIC_NODE_WITH_HINGES
+    if (node->hinges.send != 0 || node->raw_output.send_hinges != 0) return false;
+#endif
     return plays_drives(node) && node->send == 0 && node->raw_output.send == 0 && !estimates(node);
 }
 

@@ -12,9 +12,6 @@ static uint8_t not_of_hinges(const laconic_parameters *new) {
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_sensors_are_set(&new->sensors)) return LACONIC_SENSOR_FIELD_IMU_X;
 #endif
-#if LACONIC_NODE_WITH_DRIVES
-    if (new->drives.protocol != 0) return LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
-#endif
     for (int k = 0; k < 3; k++)
         if (new->start.nu_rad_per_s[k] != 0) return LACONIC_FIELD_START_NU;
     return 0;
@@ -49,6 +46,25 @@ static laconic_status find(laconic_node_hinges *found, const laconic_parameters 
     memcpy(found->first.twist, new->bodies.twist, sizeof new->bodies.twist);
     return set_start(found, why);
 }
+
+#if LACONIC_NODE_WITH_DRIVES
+/* A drive turns a wheel or a hinge that nothing else moves: not one whose wheels lead it, nor one that a twist leads. */
+static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *found, uint8_t *field, uint8_t *item) {
+    const laconic_drive_plan *plan = &node->loader.parameters.drives;
+    const laconic_articulated_model *m = &found->model;
+    const uint8_t status = laconic_node_check_drives(node, plan, m->wheel_count + m->body_count, field, item);
+    if (status != 0) return status;
+    for (int32_t b = 0; b < m->body_count; b++) {
+        const laconic_hinge_motion motion = m->link[b].motion;
+        const bool turns = motion == LACONIC_MOTION_OWN || motion == LACONIC_MOTION_PRESCRIBED;
+        if (plan->protocol == 0 || turns || plan->drive[m->wheel_count + b].node_id < 0) continue;
+        *field = LACONIC_DRIVES_FIELD_DRIVE_NODE_ID;
+        *item = (uint8_t)(m->wheel_count + b + 1);
+        return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    }
+    return 0;
+}
+#endif
 
 /* The numbers that frames of every vehicle read from the plant, and nothing else of it. */
 static void count_in_plant(laconic_node *node) {
@@ -93,8 +109,13 @@ uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *i
     const laconic_status status = find(&found, new, &why);
     *field = (uint8_t)why.field;
     *item = (uint8_t)why.item;
-    if (status == LACONIC_OK) adopt(node, &found);
-    return (uint8_t)status;
+    if (status != LACONIC_OK) return (uint8_t)status;
+#if LACONIC_NODE_WITH_DRIVES
+    const uint8_t refused = check_drives(node, &found, field, item);
+    if (refused != 0) return refused;
+#endif
+    adopt(node, &found);
+    return 0;
 }
 
 void laconic_node_drop_hinges(laconic_node *node) {
@@ -264,6 +285,21 @@ laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refu
     for (int k = 0; k < 2; k++) node->hinges.input[k].base = node->input[k];
     return step_between(node, why);
 }
+
+#if LACONIC_NODE_WITH_DRIVES
+laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const laconic_articulated_state before = hinges->state;
+    laconic_drives_act_with_hinges(&node->drives, &hinges->model, &node->input[0], hinges->input, now_us);
+    hinges->changes = true;
+    const laconic_status status = laconic_node_step_hinges(node, 1, why);
+    if (status == LACONIC_OK)
+        laconic_drives_measure_with_hinges(&node->drives, &hinges->model, &before, &hinges->state);
+    else
+        laconic_drives_off(&node->drives);
+    return status;
+}
+#endif
 
 /* ------------------------------------------------------------------------------------- outputs -- */
 

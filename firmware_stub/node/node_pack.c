@@ -177,7 +177,7 @@ static void pack_error_estimate(const laconic_node *node, uint8_t *data) {
 static bool is_deaf(const laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
     const bool tells_of_drives = plays_drives(node) || !is_running(node);
-    for (int32_t k = 0; tells_of_drives && k < node->drives.count && k < LACONIC_MAX_WHEELS; k++)
+    for (int32_t k = 0; tells_of_drives && k < node->drives.count && k < LACONIC_DRIVE_AXES; k++)
         if (node->drives.drive[k].unheard) return true;
 #endif
     return node->session.deaf != 0;

@@ -33,6 +33,9 @@
 #if LACONIC_NODE_WITH_HINGES && (LACONIC_MAX_BODIES < 1 || LACONIC_MAX_BODIES > 9)
 #error "laconic: STEERING numbers nine hinges: set LACONIC_MAX_BODIES to 1 to 9, or LACONIC_NODE_WITH_HINGES to 0"
 #endif
+#if LACONIC_NODE_WITH_HINGES && LACONIC_MAX_WHEELS + LACONIC_MAX_BODIES > 31
+#error "laconic: a loader notes 31 items: lower LACONIC_MAX_WHEELS, or set LACONIC_NODE_WITH_HINGES to 0"
+#endif
 
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
@@ -130,7 +133,7 @@ typedef struct laconic_node {
 #if LACONIC_NODE_WITH_DRIVES
     laconic_drive_plan drive_plan; /* of the vehicle, for START_DRIVES                         */
     laconic_drives drives;
-    uint64_t axes[(LACONIC_MAX_WHEELS * LACONIC_NODE_AXIS_BYTES + 7) / 8]; /* of the protocol */
+    uint64_t axes[(LACONIC_DRIVE_AXES * LACONIC_NODE_AXIS_BYTES + 7) / 8]; /* of the protocol */
 #endif
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensors sensors; /* beside the plant */

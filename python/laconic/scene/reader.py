@@ -24,7 +24,15 @@ from laconic.scene.hinge_signals import (
     output_signals_of,
     read_hinge_signals,
 )
-from laconic.scene.hinges import ROLLS_FORWARD_RAD, SHORT_FORMS, Hung, check_not_steered, has_hinges, read_hinges
+from laconic.scene.hinges import (
+    ROLLS_FORWARD_RAD,
+    SHORT_FORMS,
+    Hinge,
+    Hung,
+    check_not_steered,
+    has_hinges,
+    read_hinges,
+)
 from laconic.scene.inputs import Input
 from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
@@ -94,7 +102,7 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     if top.has("base"):
         top.fail("base", "is for laconic ros2, which does not take vehicles with hinges yet; take the table out")
     parts["sensors"], parts["base"] = NO_SENSORS, None
-    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"])
+    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges)
     top.done()
     return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
 
@@ -346,12 +354,12 @@ def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str]
     return tuple(signals)
 
 
-def read_rig(table: Table, wheels: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def read_rig(table: Table, wheels: Sequence[dict[str, Any]], hinges: Sequence[Hinge] = ()) -> dict[str, Any]:
     """`[rig]`: the first CAN identifier, the frames to use, and the drives of a vehicle that is played."""
     id_base = table.whole("id_base", None)
     if id_base is not None and not 0 <= id_base <= 0x7FF:
         table.fail("id_base", f"is {id_base}; give an 11-bit identifier, 0 to 0x7FF")
     frames = table.texts("frames", ())
-    drives = read_drives(table.table("drives"), wheels) if table.has("drives") else None
+    drives = read_drives(table.table("drives"), wheels, hinges) if table.has("drives") else None
     table.done()
     return {"id_base": id_base, "frames": frames, "drives": drives}
