@@ -176,8 +176,8 @@ void laconic_drives_start_with_hinges(laconic_drives *drives, const laconic_driv
     begin_protocol(drives, now_us);
 }
 
-void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articulated_model *model,
-                                    laconic_input *held, laconic_articulated_input input[2], uint32_t now_us) {
+void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articulated_model *model, laconic_input *held,
+                                    laconic_articulated_input input[2], uint32_t now_us) {
     drives->protocol->on_step(drives, advance(drives, now_us));
     for (int32_t k = 0; k < drives->count; k++) {
         const int32_t i = drives->wheel[k], b = i - model->wheel_count;

@@ -48,7 +48,7 @@ static laconic_status find(laconic_node_hinges *found, const laconic_parameters 
 }
 
 #if LACONIC_NODE_WITH_DRIVES
-/* A drive turns a wheel or a hinge that nothing else moves: not one whose wheels lead it, nor one that a twist leads. */
+/* A drive turns a wheel, or a hinge that nothing else moves: neither its own wheels nor a twist. */
 static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *found, uint8_t *field, uint8_t *item) {
     const laconic_drive_plan *plan = &node->loader.parameters.drives;
     const laconic_articulated_model *m = &found->model;

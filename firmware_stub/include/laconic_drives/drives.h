@@ -34,8 +34,8 @@ void laconic_drives_start_with_hinges(laconic_drives *drives, const laconic_driv
 
 /* Before a step: writes the axle torques of wheels into `held`, and of steering axes the torque into both inputs, or
  * the rate of a prescribed one into that of the end. The step then runs from one input to the other. */
-void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articulated_model *model,
-                                    laconic_input *held, laconic_articulated_input input[2], uint32_t now_us);
+void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articulated_model *model, laconic_input *held,
+                                    laconic_articulated_input input[2], uint32_t now_us);
 
 /* After it: what the encoders show. */
 void laconic_drives_measure_with_hinges(laconic_drives *drives, const laconic_articulated_model *model,

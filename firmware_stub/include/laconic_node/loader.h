@@ -8,7 +8,7 @@
 #if LACONIC_NODE_WITH_HINGES
 #include "laconic/articulated.h"
 
-/* What a vehicle with hinges has in addition to its carriage and wheels: its bodies, start, and commands at the start. */
+/* What a vehicle with hinges has besides its carriage and wheels: its bodies, start, and commands at the start. */
 typedef struct laconic_node_bodies {
     int32_t body_count; /* 0: a vehicle without hinges */
     int32_t wheel_body[LACONIC_MAX_WHEELS];

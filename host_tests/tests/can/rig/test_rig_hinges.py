@@ -1,4 +1,4 @@
-"""Vehicles with hinges over a bus: the bits of `laconic simulate`, scaled frames, refusals, and the reference client."""
+"""Vehicles with hinges over a bus: the bits of `laconic simulate`, scaled frames, refusals, the reference client."""
 
 from __future__ import annotations
 
