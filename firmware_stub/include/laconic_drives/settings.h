@@ -65,8 +65,8 @@ enum {
 void laconic_drive_plan_begin(laconic_drive_plan *plan);
 
 /* OK iff the plan fits the protocol (not NULL) and a vehicle of so many wheels and steering axes. Refuses as a
- * vehicle's numbers are, by the rules of the rows above, and with ABOVE_LIMIT a node id that the protocol does not have,
- * that two drives have, or of an axis that does not exist. */
+ * vehicle's numbers are, by the rules of the rows above, and with ABOVE_LIMIT a node id that the protocol does not
+ * have, that two drives have, or of an axis that does not exist. */
 laconic_status laconic_drive_plan_check(const laconic_drive_plan *plan, const laconic_drive_protocol *protocol,
                                         int32_t wheel_count, laconic_refusal *why);
 
