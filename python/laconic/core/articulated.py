@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import cache
 from itertools import count, takewhile
@@ -271,6 +272,14 @@ class ArticulatedPlant(OwnMemory):
             if step(model, self.integrator, self.c, start, end, why) != 0:
                 raise self.core.refusal(why)
             self.steps += 1
+
+    def twin(self, step_s: float) -> ArticulatedPlant:
+        """The same vehicle at this moment, in steps of another size; Refused for one that the method cannot take."""
+        found = copy(self)
+        found.c, found.steps = self.save(), 0
+        found.integrator = self.core.ffi.new("laconic_articulated_integrator *")
+        found.set_step(step_s)
+        return found
 
     def save(self) -> Any:
         """A copy of the state, for `restore`."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +31,8 @@ STEERED_ALONE = ("name", "scrub_m", "mass_kg", "yaw_inertia_kgm2", "steering_gai
 """Keys of a wheel that mean nothing unless it is steered."""
 WITHOUT_HINGES = ("give a rigid vehicle, with [[vehicle.support]] in the place of casters and steered wheels, as "
                   "laconic import --no-hinges writes it")
+MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
+              "rotor_inertia_kgm2")
 COMMANDED = ("prescribed", "coordinated")
 OF_WHOLE_HINGES = ("twist zero", "twist jumps", "massless hinge", "coordinated too few", "steered too often",
                    "coordinated on body", "step beyond trail limit")
@@ -50,6 +52,7 @@ class Hinge:
     refuses: bool = False  # at a limit, instead of saturating
     start_angle_rad: float = 0.0
     start_rate_rad_per_s: float = 0.0
+    motor: tuple[tuple[str, float], ...] = ()  # the numbers of its motor's table, where it is given at its shaft
 
     @property
     def has_stops(self) -> bool:
@@ -160,7 +163,8 @@ def _steered(table: Table, wheel: dict[str, Any], number: int) -> _Part:
     body = {"name": hinge.name, "parent": wheel.get("body", CARRIAGE), "hinge": kind, "hinge_x_m": wheel["x_m"],
             "hinge_y_m": wheel["y_m"], "mass_kg": read_number(table, "mass_kg"),
             "yaw_inertia_kgm2": read_number(table, "yaw_inertia_kgm2")}
-    body |= _motor(table, kind, "steering_motor", "steering_gain_Nm_per_V", "steering_damping_Nms", body)
+    turned, motor = _motor(table, kind, "steering_motor", "steering_gain_Nm_per_V", "steering_damping_Nms", body)
+    body, hinge = body | turned, replace(hinge, motor=motor)
     wheel |= {"x_m": 0.0, "y_m": read_number(table, "scrub_m"), "body": hinge.name}
     return _Part(table, body, hinge, [])
 
@@ -200,7 +204,8 @@ def _general(table: Table, number: int) -> _Part:
     numbers = ("hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "stiffness_Nm")
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": kind,
             **{key: read_number(table, key) for key in numbers}, "rest_rad": table.angle("rest", 0.0)}
-    body |= _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body)
+    turned, motor = _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body)
+    body, hinge = body | turned, replace(hinge, motor=motor)
     if hinge.is_commanded:
         for key in ("damping_Nms", "stiffness_Nm"):
             if body.get(key):
@@ -209,29 +214,29 @@ def _general(table: Table, number: int) -> _Part:
 
 
 def _motor(table: Table, kind: str, motor_key: str, gain: str, damping: str, body: Mapping[str, Any]
-           ) -> dict[str, float]:
-    """Gain, damping and inertia of a hinge: given directly, or those of a motor at its shaft."""
+           ) -> tuple[dict[str, float], tuple[tuple[str, float], ...]]:
+    """Gain, damping and inertia of a hinge: given directly, or those of a motor at its shaft; and that motor."""
     direct = {"gain_Nm_per_V": read_number(table, gain), "damping_Nms": read_number(table, damping)}
     if kind != "motor":
         for key in (gain, motor_key):
             if table.peek(key):
                 table.fail(key, f'is given for a hinge that is "{kind}"; take it out, or make the hinge "motor"')
-        return direct
+        return direct, ()
     if not table.has(motor_key):
         if not direct["gain_Nm_per_V"]:
             table.fail(gain, f"is missing; give it, or a table {motor_key}, for a hinge with a motor")
-        return direct
+        return direct, ()
     for key in (gain, damping):
         if table.peek(key) is not None:
             table.fail(key, f"is given besides {motor_key}; keep one of them")
     motor = table.table(motor_key)
-    resistance, torque, emf, ratio, friction, rotor = (read_number(motor, key) for key in (
-        "resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
-        "rotor_inertia_kgm2"))
+    numbers = {key: read_number(motor, key) for key in MOTOR_KEYS}
+    resistance, torque, emf, ratio, friction, rotor = numbers.values()
     motor.done()
-    return {"gain_Nm_per_V": ratio * torque / resistance,
-            "damping_Nms": ratio * ratio * (torque * emf / resistance + friction),
-            "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio * ratio * rotor}
+    turned = {"gain_Nm_per_V": ratio * torque / resistance,
+              "damping_Nms": ratio * ratio * (torque * emf / resistance + friction),
+              "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio * ratio * rotor}
+    return turned, tuple(numbers.items())
 
 
 # --------------------------------------------------------------------------- names, limits, order

@@ -78,9 +78,6 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     known = {signal: name for name, of_name in input_signals(vehicle, hinges).items() for signal in of_name}
     parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known, hinges) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), method_names(), reals)
-    if parts["run"].get("tolerance") is not None:
-        top.fail("run.step_s", '"auto" is not found for vehicles with hinges yet; give a step in seconds, such as '
-                 "0.001")
     check_places(top, parts["inputs"])
     for each in parts["inputs"]:
         check_input(top, each, vehicle, parts["run"]["duration_s"])
@@ -91,10 +88,9 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     outputs = top.table("outputs")
     signals = read_hinge_signals(outputs, output_signals_of(vehicle, hinges))
     parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
-    if top.has("base"):
-        top.fail("base", "is for laconic ros2, which does not take vehicles with hinges yet; take the table out")
-    parts["sensors"], parts["base"] = NO_SENSORS, None
-    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"])
+    parts["base"] = read_base(top.table("base"), vehicle) if top.has("base") else None
+    parts["sensors"] = NO_SENSORS
+    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges)
     top.done()
     return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
 
@@ -348,12 +344,12 @@ def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str]
     return tuple(signals)
 
 
-def read_rig(table: Table, wheels: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def read_rig(table: Table, wheels: Sequence[dict[str, Any]], hinges: Sequence[Hinge] = ()) -> dict[str, Any]:
     """`[rig]`: the first CAN identifier, the frames to use, and the drives of a vehicle that is played."""
     id_base = table.whole("id_base", None)
     if id_base is not None and not 0 <= id_base <= 0x7FF:
         table.fail("id_base", f"is {id_base}; give an 11-bit identifier, 0 to 0x7FF")
     frames = table.texts("frames", ())
-    drives = read_drives(table.table("drives"), wheels) if table.has("drives") else None
+    drives = read_drives(table.table("drives"), wheels, hinges) if table.has("drives") else None
     table.done()
     return {"id_base": id_base, "frames": frames, "drives": drives}
