@@ -139,6 +139,12 @@ typedef struct posture_rates {
     real caster_square, yaw;
 } posture_rates;
 
+/* v/a of a body, as rates_of_posture has its square */
+static inline real following_speed(const laconic_link *link, vector v) {
+    const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
+    return laconic_root((v.x * v.x + v.y * v.y) * (mx * mx + my * my));
+}
+
 INLINE posture_rates rates_of_posture(const articulated_sweep *s, const laconic_articulated_model *m) {
     posture_rates fast = {R(0), magnitude(s->twist[0].z)};
     for (int32_t b = 1; b <= m->body_count; b++) {
@@ -169,6 +175,24 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
                                              laconic_refusal *why);
 /* Into how many parts a rate divides a step of auto; more than 256: moebius-4 takes it. */
 int32_t laconic_articulated_parts_for(real rate_step);
+
+/* Whether nothing drives or damps the vehicle over the step, so that its energy stays. */
+bool laconic_articulated_keeps_energy(const laconic_articulated_model *m, const articulated_course *course);
+
+/* For such a vehicle: whether the energy after a step is right. What a method's error adds is taken back. */
+bool laconic_articulated_hold_energy(laconic_articulated_state *after, const laconic_articulated_state *before,
+                                     const laconic_articulated_model *m, const articulated_drive *drive);
+
+/* Refuses a step for the body whose wheels follow fastest; `largest`: of step times rate. */
+laconic_status laconic_articulated_refuse_trail(const laconic_articulated_model *m,
+                                                const laconic_articulated_state *state, const articulated_drive *drive,
+                                                real step_s, real largest, laconic_refusal *why);
+
+#define LARGEST_AUTO_RATE R(64) /* rate · step, of what auto follows by its rule of parts */
+
+/* The step from `done` of 2²⁰ units on, in parts that judge themselves; refuses as the function above. */
+laconic_status laconic_articulated_adaptive(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                            const articulated_course *course, uint32_t done, laconic_refusal *why);
 
 laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
                                         const laconic_articulated_integrator *integrator,

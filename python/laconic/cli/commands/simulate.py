@@ -101,6 +101,8 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         print_summary(run, out, plot, film, bag, lines=enclosure.lines if enclosure else ())
     for each in run.limited:
         warn(f"{given.path}: {each.in_words(given.run.step_s)}")
+    for fold in run.folded:
+        warn(f"{given.path}: {fold.in_words()}")
     if run.least_margin and run.least_margin[0] < 0.0:
         warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
              f"slip, by {-run.least_margin[0]:.3g} N")
@@ -223,7 +225,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else margin_json(run),
-        "limited": [asdict(each) for each in run.limited],
+        "limited": [asdict(each) for each in run.limited], "folded": [asdict(each) for each in run.folded],
         "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}
