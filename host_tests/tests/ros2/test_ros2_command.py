@@ -54,10 +54,10 @@ def test_the_environment_names_domain_and_distribution(monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize("words, of_environment, cyclone, fast", [
-    ([], "", True, True), (["--rmw", "fastrtps"], "", False, True), ([], "rmw_fastrtps_cpp", False, True),
-    ([], "rmw_other", True, True), (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True, False)])
-def test_services_are_those_of_the_middleware(words: list[str], of_environment: str, cyclone: bool, fast: bool,
-                                              monkeypatch: pytest.MonkeyPatch) -> None:
+    ([], "", False, True), (["--rmw", "fastrtps"], "", False, True), ([], "rmw_fastrtps_cpp", False, True),
+    ([], "rmw_other", False, True), (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True, False)])
+def test_services_are_for_both_unless_cyclonedds_is_named(words: list[str], of_environment: str, cyclone: bool,
+                                                          fast: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", of_environment)
     made: list[Session] = []
     monkeypatch.setattr(Session, "run", lambda session: made.append(session))

@@ -94,8 +94,8 @@ def services() -> Iterator[Services]:
     made = Services(DOMAIN, is_local=True, now_s=lambda: 0.0)
     made.heard = []  # type: ignore[attr-defined]
 
-    def answer(request: bytes) -> bytes | None:
-        made.heard.append(request)  # type: ignore[attr-defined]
+    def answer(request: bytes, has_header: bool) -> bytes | None:
+        made.heard.append((request, has_header))  # type: ignore[attr-defined]
         return b"\x00\x01\x00\x00" + request[::-1] if request[-1:] != b"?" else None
 
     made.serve(("rq/resetRequest", f"{TYPE}Request_", ""), ("rr/resetReply", f"{TYPE}Response_", ""), answer)
@@ -158,10 +158,14 @@ def test_a_lost_request_is_asked_for(services: Services) -> None:
     assert [(each.first, [*each.numbers]) for each in found] == [(4, [])]
 
 
-def test_requests_of_cyclonedds_and_of_strangers_are_left_to_others(services: Services) -> None:
+def test_a_request_of_cyclonedds_is_known_by_its_vendor(services: Services) -> None:
     client = Client(services, OF_CYCLONE)
     client.join()
-    assert response(client.send(client.request(1, b"\x00\x01\x00\x00abcd")), services) == []
+    assert len(response(client.send(client.request(1, b"\x00\x01\x00\x00abcd")), services)) == 1
+    assert services.heard == [(b"\x00\x01\x00\x00abcd", True)]  # type: ignore[attr-defined]
+
+
+def test_requests_of_strangers_are_not_heard(services: Services) -> None:
     stranger = Client(services)
     assert stranger.send(stranger.request(1, b"\x00\x01\x00\x00abcd")) == []
     assert services.heard == []  # type: ignore[attr-defined]
