@@ -17,8 +17,7 @@ from test_ros2_messages import MESSAGES, fill
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.ros2 import messages
-from laconic.ros2.cdr import Plain
-from laconic.ros2.messages import definitions, message_class, new, plain_class, type_hash
+from laconic.ros2.messages import Plain, definitions, message_class, new, plain_class, type_hash
 from laconic.ros2.names import LATCHED, Quality, polled
 from laconic.ros2.session import Ros2Options, Session
 from laconic.scene import read_scene
