@@ -210,19 +210,25 @@ def _split(signal: str, of_hinge: dict[str, int]) -> tuple[str, int]:
     return name, of_hinge[item] if item in of_hinge else int(item) - 1 if item else 0
 
 
-def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> ArticulatedPlant:
-    """The vehicle of a scene at its start; Refused for a motion that its wheels do not allow."""
+def given_start(scene: Scene, vehicle: ArticulatedVehicle) -> dict[str, Any]:
+    """The numbers of a scene's start, as ArticulatedVehicle.plant takes them."""
     start = scene.initial
     angles = [hinge.start_angle_rad for hinge in scene.hinges]
     rates = [hinge.start_rate_rad_per_s for hinge in scene.hinges]
-    given: dict[str, Any] = {"velocity_m_per_s": start.velocity_body_m_per_s,
-                             "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s, "x_m": start.x_m, "y_m": start.y_m,
-                             "heading_rad": start.heading_rad, "hinge_angle_rad": angles, "inputs": row}
+    rates = rolling_rates(vehicle, start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, angles, rates)
+    return {"velocity_m_per_s": start.velocity_body_m_per_s, "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s,
+            "x_m": start.x_m, "y_m": start.y_m, "heading_rad": start.heading_rad, "hinge_angle_rad": angles,
+            "hinge_rate_rad_per_s": rates}
+
+
+def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> ArticulatedPlant:
+    """The vehicle of a scene at its start; Refused for a motion that its wheels do not allow."""
+    start, given = scene.initial, given_start(scene, vehicle)
     try:
-        rates = rolling_rates(vehicle, given["velocity_m_per_s"], start.yaw_rate_rad_per_s, angles, rates)
-        plant = vehicle.plant(scene.run.method, scene.run.step_s, hinge_rate_rad_per_s=rates, **given)
+        plant = vehicle.plant(scene.run.method, scene.run.step_s, inputs=row, **given)
     except Refused as refused:
         raise scene.refusal_in_file(refused, "at t = 0 s") from None
+    rates = given["hinge_rate_rad_per_s"]
     size = max(map(abs, (*start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, *rates)))
     if plant.changed_m_per_s > (ALLOWED if vehicle.core.real == "double" else IN_SINGLE) * max(1.0, size):
         near = plant.motion()
@@ -288,7 +294,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
                 if at % every == 0:
                     run.take(table[at - first, 0], at)
                 until = min(first + count, (at // every + 1) * every)
-                _follow(scene, run, table[at - first : until - first], watched)
+                _follow(run, table[at - first : until - first], watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
@@ -311,18 +317,18 @@ def _stretches(first: int, count: int, every: int) -> list[int]:
     return sorted({first, *inside})
 
 
-def _follow(scene: Scene, run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
-    """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
+def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+    """As follow_rows(); what estimates errors follows, too, as far as the run came."""
     plant, before_all = run.plant, run.plant.steps
     try:
-        _follow_alone(scene, plant, table, watched)
+        follow_rows(plant, table, watched)
     finally:
         if run.parts:
             run.parts.follow(table[: plant.steps - before_all])
 
 
-def _follow_alone(scene: Scene, plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]
-                  ) -> None:
+def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+    """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
     if not watched:
         plant.follow(table)
         return

@@ -48,6 +48,9 @@ class Free(Trial):
 
     def __init__(self, node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
                  tolerances: dict[str, float], latency_s: float = 0.02):
+        if scene.has_hinges:
+            raise BadInput(f"{scene.path}: --free-run does not take vehicles with hinges yet; use --lockstep or "
+                           "--same-bits")
         if 0 < watchdog_ms <= 1000 * CYCLE_S:
             raise BadInput(f"--watchdog {watchdog_ms}: the rig sends voltages every {1000 * CYCLE_S:.0f} ms; give "
                            "more, or 0 for none")

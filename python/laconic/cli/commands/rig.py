@@ -31,7 +31,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 
 
 @click.command("rig")
-@click.argument("scene_name", type=SceneName(), metavar="[SCENE]", required=False)
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="[SCENE]", required=False)
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
 @click.option("--channel", help="Channel of the interface: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
@@ -97,6 +97,9 @@ def drive(scene: Scene, options: Options) -> int:
     from laconic.can.rig.run import run
     from laconic.can.rig.scaled import read_tolerances
 
+    if scene.has_hinges and (options.bag or options.replay):
+        raise BadInput(f"{scene.path}: --{'bag' if options.bag else 'replay'} does not take vehicles with hinges yet; "
+                       "leave it out")
     began = time.perf_counter()
     if options.replay is not None:
         goes_with("--replay", "--lockstep", "--channel", "--id-base", "--method", "--real", "--tolerance", "--junit",
