@@ -98,7 +98,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
 def _of_tree(scene: Scene, form: str) -> tuple[str, dict[str, float]]:
     from laconic.core import load
     from laconic.tools.derive import tree_printing
-    from laconic.tools.derive.tree_check import tree_core_difference, tree_forms_difference
+    from laconic.tools.derive.scene_check import tree_core_difference, tree_forms_difference
     from laconic.tools.derive.tree_system import derive_tree, tree_numbers
 
     vehicle = scene.articulated_vehicle(load("double"))
