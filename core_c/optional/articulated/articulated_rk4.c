@@ -80,6 +80,7 @@ INLINE void turn_hinges(stage_sums *sums, articulated_sweep *s, const laconic_ar
 /* Directions and angles of the start, which are those of the first stage. */
 INLINE void begin_hinges(stage_sums *sums, articulated_sweep *s, articulated_sweep *start,
                          const laconic_articulated_model *m, const laconic_articulated_state *state) {
+    start->angle_rad[0] = R(0); /* as in take_posture_of */
     for (int32_t b = 0; b < m->body_count; b++) {
         take_hinge_of(start, m, state, b);
         s->toward[b] = start->toward[b];

@@ -96,6 +96,7 @@ INLINE void take_hinge_of(articulated_sweep *s, const laconic_articulated_model 
 
 INLINE void take_posture_of(articulated_sweep *s, const laconic_articulated_model *m,
                             const laconic_articulated_state *state) {
+    s->angle_rad[0] = R(0); /* where LACONIC_MAX_BODIES is 1, compilers doubt that the loop sets it */
     for (int32_t b = 0; b < m->body_count; b++) take_hinge_of(s, m, state, b);
     forget_sizes(s, m);
 }
