@@ -35,7 +35,7 @@
 
 #include "laconic/laconic.h"
 
-/* Of the methods, in the order of laconic_articulated_method. */
+/* The names of the methods, in the order of laconic_articulated_method. */
 #define LACONIC_ARTICULATED_METHOD_NAMES "auto", "rk4", "circle", "moebius-4"
 
 #if LACONIC_MAX_BODIES > 0

@@ -14,6 +14,7 @@ from hinge_scenes import CASTER, HINGED, scene_with, tables_of, two_wheels
 
 import laconic
 from laconic.cli.main import run
+from laconic.core.articulated import ArticulatedPlant
 from laconic.errors import BadInput
 from laconic.tools.analyse.hinged import HingedStudy, study_hinges
 
@@ -145,7 +146,8 @@ def test_the_command_prints_text_and_numbers_and_writes_both(tmp_path: Path, cap
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
-    (["tugger_train", "--only", "steady"], "--only"), (["tugger_train", "--at", "1"], "--at"),
+    (["tugger_train", "--only", "steady"], "--only: has no meaning beside a scene with hinges; leave it out"),
+    (["tugger_train", "--at", "1"], "--at: has no meaning beside a scene with hinges; leave it out"),
     (["s1", "--speed", "1"], "for vehicles with hinges"),
     (["tugger_train", "--steering", "fron", "0.1"], "did you mean front?"),
     (["tugger_train", "--steering", "first", "0.1"], "does not steer the carriage"),
@@ -165,6 +167,31 @@ def test_vehicles_that_have_no_such_motions_are_refused_with_the_remedy() -> Non
     held["vehicle"]["wheel"][0]["locked"] = True
     with pytest.raises(BadInput, match=r"wheel\[1\].*locked"):
         study_hinges(scene_with(held, initial={}))
+
+
+@pytest.mark.parametrize("kg", [0.0, 1.0])
+@pytest.mark.parametrize("trail_m", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("turned_deg", [0.0, 40.0])
+def test_a_short_trail_grows_by_its_law_and_leaves_the_carriage_its_neutral_motions(
+        trail_m: float, kg: float, turned_deg: float) -> None:
+    caster = {**CASTER, "trail_m": trail_m, "start_angle_deg": turned_deg} | ({"mass_kg": kg} if kg else {})
+    found = study_hinges(scene_with(two_wheels(caster=[caster])), speeds_m_per_s=(1.0,))
+    assert found.failures == []
+    assert sorted(z.real for z in found.straight[0].eigenvalues_per_s) == pytest.approx([-1.0 / trail_m, 0.0, 0.0])
+
+
+def test_a_motion_that_nothing_holds_is_refused_by_what_keeps_no_angle(monkeypatch: pytest.MonkeyPatch) -> None:
+    rates = ArticulatedPlant.rates
+
+    def swinging(plant: ArticulatedPlant, inputs: Any) -> Any:
+        twist, twist_rate = rates(plant, inputs)
+        return twist, twist_rate + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1e20]])
+
+    monkeypatch.setattr(ArticulatedPlant, "rates", swinging)
+    with pytest.raises(BadInput) as why:
+        study_hinges(scene_with(two_wheels(caster=[{**CASTER, "trail_m": 1e-4}])), speeds_m_per_s=(1.0,))
+    assert "vehicle.caster[1] (caster_1), whose wheels lie 0.0001 m from it, keeps no angle" in str(why.value)
+    assert "longer trail" in str(why.value) and "--speed" not in str(why.value)
 
 
 def test_a_slope_is_left_out_and_the_words_say_so() -> None:

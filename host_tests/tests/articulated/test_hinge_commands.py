@@ -141,7 +141,7 @@ ELSEWHERE = {  # every other command that takes a scene, with what it needs in a
     "replay": "LOG SCENE", "identify": "LOG --scene SCENE -o FOLDER/f.toml",
     "optimise": "SCENE --free vehicle.mass_kg=1:2 --goal min:speed",
     "sweep": "SCENE --vary vehicle.mass_kg=1:2:3 -o FOLDER/sweep", "report": "--scene SCENE", "demo": "SCENE",
-    "ros2": "SCENE", "audit": "LOG SCENE", "logs": "LOG --scene SCENE"}
+    "audit": "LOG SCENE", "logs": "LOG --scene SCENE"}
 
 
 def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
@@ -149,7 +149,7 @@ def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse"} and takes - with_hinges == {*ELSEWHERE}
+    assert with_hinges == {"simulate", "fmu", "analyse", "ros2"} and takes - with_hinges == {*ELSEWHERE}
 
 
 @pytest.mark.parametrize("command", ELSEWHERE)
@@ -164,6 +164,7 @@ def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, n
     status, text, why = told([command, *arguments], capsys)
     assert status == 2 and text == "" and why.count("\n") == 1
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
+    assert "[[vehicle.support]]" in why and "laconic import --no-hinges" in why
 
 
 @pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"], ["--bag", "x.mcap"]])

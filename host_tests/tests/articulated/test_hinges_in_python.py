@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -221,3 +222,14 @@ def test_each_scene_gives_its_vehicle_in_both_precisions(name: str) -> None:
         assert made.wheel_count == scene.wheel_count and made.names == tuple(hinge.name for hinge in scene.hinges)
     with pytest.raises(BadInput, match=r"laconic\.Vehicle"):
         ArticulatedVehicle.of(laconic.read_scene("s1"))
+
+
+def test_a_rigid_vehicle_of_a_scene_with_hinges_names_the_one_that_takes_them() -> None:
+    with pytest.raises(BadInput, match=r"caster\[1\]: laconic\.Vehicle does not .* laconic\.ArticulatedVehicle\.of"):
+        laconic.Vehicle.of(laconic.read_scene("mir_like"))
+
+
+def test_variants_that_the_fmu_of_hinges_lacks_are_refused_by_the_name_of_the_option(tmp_path: Path) -> None:
+    for option in ("derivatives", "estimate"):
+        with pytest.raises(BadInput, match=f"^--{option}: the FMU of a vehicle with hinges"):
+            laconic.make_fmu(laconic.read_scene("mir_like"), tmp_path / "f.fmu", version=3, **{option: True})

@@ -28,6 +28,12 @@ def test_a_run_ends_after_its_duration_with_figures(capsys: pytest.CaptureFixtur
     assert "hears Twist or TwistStamped on /cmd_vel" in printed.err
 
 
+def test_a_car_says_what_drives_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", "f1tenth", *LOCAL, "--duration", "0.1"]) == 0
+    assert "hears Twist or TwistStamped on /cmd_vel and AckermannDriveStamped on ackermann_cmd and drive" in \
+        capsys.readouterr().out
+
+
 def test_a_record_is_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "run.toml"
     assert run(["ros2", "turtlebot3_burger", *LOCAL, "--duration", "0.1", "--record", str(path)]) == 0
@@ -47,16 +53,17 @@ def test_the_environment_names_domain_and_distribution(monkeypatch: pytest.Monke
     assert "ROS_DOMAIN_ID: home is not a whole number" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("words, of_environment, services", [
-    ([], "", True), (["--rmw", "fastrtps"], "", False), ([], "rmw_fastrtps_cpp", False), ([], "rmw_other", True),
-    (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True)])
-def test_services_are_left_out_for_a_middleware_that_cannot_call_them(
-        words: list[str], of_environment: str, services: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("words, of_environment, cyclone, fast", [
+    ([], "", True, True), (["--rmw", "fastrtps"], "", False, True), ([], "rmw_fastrtps_cpp", False, True),
+    ([], "rmw_other", True, True), (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True, False)])
+def test_services_are_those_of_the_middleware(words: list[str], of_environment: str, cyclone: bool, fast: bool,
+                                              monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", of_environment)
     made: list[Session] = []
     monkeypatch.setattr(Session, "run", lambda session: made.append(session))
     assert run(["ros2", "robotino2", *LOCAL, *words]) == 0
-    assert bool(made[0].robots[0].node.services) == services
+    node = made[0].robots[0].node
+    assert (bool(node.services[0].reader), bool(node.other_readers)) == (cyclone, fast)
 
 
 def test_without_its_package_the_extra_is_named() -> None:

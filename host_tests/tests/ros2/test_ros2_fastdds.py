@@ -121,6 +121,18 @@ def test_the_peer_reads_graph_types_and_hashes(peer: Path) -> None:
         assert f"reader rt/cmd_vel geometry_msgs::msg::dds_::{last}_" in found["endpoints"]
 
 
+@pytest.mark.parametrize("options", [(), ("--rmw", "fastrtps")])
+def test_the_peer_calls_a_service_as_rmw_fastrtps_does(peer: Path, options: tuple[str, ...]) -> None:
+    with robot(*options) as process:
+        found = heard(peer, 5.0, "call")
+        ended(process)
+    assert found["requests"] > 50 and found["of_others"] == 0
+    answers = {number: types for number, *types in found["answers"]}
+    assert len(answers) == len(found["answers"]) > found["requests"] - 20  # the last may be on their way
+    assert sorted(answers) == [*range(1, len(answers) + 1)]
+    assert answers[1] == [1, 3, 4, 0] and answers[2] == [1, 3, 4]
+
+
 def test_bytes_of_another_type_move_nothing(peer: Path) -> None:
     with robot() as process:
         found = heard(peer, 4.0, "garbage")

@@ -20,7 +20,8 @@ import laconic
 from laconic.errors import BadInput
 from laconic.ros2.maps import Map
 from laconic.ros2.messages import new, type_hash
-from laconic.ros2.wire import LATCHED, USUAL, Participant, polled
+from laconic.ros2.names import LATCHED, USUAL, polled
+from laconic.ros2.wire import Participant
 from laconic.scene import read_scene
 from ros2_support import DOMAIN, announced, last, rig_of
 
@@ -243,6 +244,18 @@ def test_the_scan_shows_the_walls_of_the_map(tmp_path: Path) -> None:
               for number, distance in enumerate(scan.ranges)}
         for degrees, distance in ((0, 0.95), (90, 2.45), (-90, 1.45), (-180, 0.95)):
             assert at[degrees] == pytest.approx(distance, abs=0.06)
+
+
+@pytest.mark.parametrize("place, yaw", [(math.nan, 1.0), (1e300, 1.0), (0.0, 1e300), (0.0, math.inf), (0.0, 0.0)])
+def test_a_pose_that_cannot_be_is_told_and_ignored(place: float, yaw: float) -> None:
+    with rig_of(is_loopback=True) as rig:
+        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
+        pose.pose.pose.position.x, pose.pose.pose.orientation.z, pose.pose.pose.orientation.w = place, yaw, 0.0
+        rig.node.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped").write(pose)
+        rig.turn(2)
+        assert rig.lines == ["/laconic: initialpose has a pose that is infinite, NaN, beyond 1e+06 or without a yaw, "
+                             "and is ignored"]
+        assert rig.session.base.look()[0].x_m == 0.0
 
 
 def test_outside_the_map_a_scan_hits_nothing(tmp_path: Path) -> None:

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import pytest
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from laconic.ros2.messages import DEFINITIONS, Packed, dds_name, definitions, message_class, new, offsets_of, type_hash
 
 STORES = {"jazzy": get_typestore(Stores.ROS2_JAZZY), "humble": get_typestore(Stores.ROS2_HUMBLE)}
+ACKERMANN = """float32 steering_angle
+float32 steering_angle_velocity
+float32 speed
+float32 acceleration
+float32 jerk
+"""
+for store in STORES.values():  # the package is released apart from the distributions
+    store.register(get_types_from_msg(ACKERMANN, "ackermann_msgs/msg/AckermannDrive"))
+    store.register(get_types_from_msg("std_msgs/Header header\nAckermannDrive drive\n",
+                                      "ackermann_msgs/msg/AckermannDriveStamped"))
 OF_GRAPH = "rmw_dds_common/"  # rosbags hashes the char of its .msg file; ROS hashes the uint8 that IDL makes of it
 MESSAGES = [name for name in definitions(16) if "/msg/" in name and not name.startswith(OF_GRAPH)]
 

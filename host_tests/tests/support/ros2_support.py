@@ -12,8 +12,9 @@ from typing import Any
 from cyclonedds.builtin import BuiltinDataReader
 
 from laconic.ros2.messages import message_class, new
+from laconic.ros2.names import USUAL, polled, topic_name
 from laconic.ros2.session import Clock, Ros2Options, Session
-from laconic.ros2.wire import Node, Participant, polled, topic_name
+from laconic.ros2.wire import Node, Participant
 from laconic.scene import Scene, read_scene
 
 DOMAIN = 77
@@ -72,8 +73,6 @@ class Rig:
         from cyclonedds.pub import DataWriter
         from cyclonedds.sub import DataReader
 
-        from laconic.ros2.wire import USUAL
-
         writer = make(DataWriter, topic_name("rq", "/", service, "Request"), request, USUAL, of_service="clientid=1;")
         reader = make(DataReader, topic_name("rr", "/", service, "Reply"), response, USUAL, of_service="clientid=1;")
         writer.write(message_class(request, participant.gid_bytes, True)(client=41, sequence=7, **values))
@@ -86,7 +85,7 @@ class Rig:
 @contextmanager
 def rig_of(scene: str | Scene = "turtlebot3_burger", **options: Any) -> Iterator[Rig]:
     """A rig of a scene, whose session and peer leave the domain at the end."""
-    time, lines = Virtual(), []
+    time, lines = Virtual(), list[str]()
     given = Ros2Options(**{"domain": DOMAIN, "is_local": True, **options})
     made = scene if isinstance(scene, Scene) else read_scene(scene)
     with Session(made, given, lines.append, time.clock()) as session, \

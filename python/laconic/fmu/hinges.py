@@ -63,8 +63,8 @@ def check(scene: Scene, **options: bool) -> None:
         return
     for option, wanted in options.items():
         if wanted:
-            raise BadInput(f"{option}: the FMU of a vehicle with hinges ({scene.path}) has no such variant yet; leave "
-                           "it out")
+            raise BadInput(f"--{option}: the FMU of a vehicle with hinges ({scene.path}) has no such variant yet; "
+                           "leave it out")
     if scene.sensors.imu is not None or scene.sensors.encoder is not None:
         raise BadInput(f"{scene.path}: sensors: the FMU of a vehicle with hinges has no sensors yet; take them out")
 

@@ -31,6 +31,8 @@ STEERED_ALONE = ("name", "scrub_m", "mass_kg", "yaw_inertia_kgm2", "steering_gai
 """Keys of a wheel that mean nothing unless it is steered."""
 MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
               "rotor_inertia_kgm2")
+WITHOUT_HINGES = ("give a rigid vehicle, with [[vehicle.support]] in the place of casters and steered wheels, as "
+                  "laconic import --no-hinges writes it")
 COMMANDED = ("prescribed", "coordinated")
 OF_WHOLE_HINGES = ("twist zero", "twist jumps", "massless hinge", "coordinated too few", "steered too often",
                    "coordinated on body", "step beyond trail limit")
@@ -115,7 +117,7 @@ def check_without_hinges(scene: Scene, command: str) -> None:
     """BadInput where something that knows rigid vehicles alone gets one with hinges."""
     if scene.has_hinges:
         raise BadInput(f"{scene.path}: {scene.hinges[0].place}: {command} does not take vehicles with hinges yet; use "
-                       "laconic simulate")
+                       f"laconic simulate, or {WITHOUT_HINGES}")
 
 
 def read_hinges(table: Table, wheels: Sequence[tuple[Table, dict[str, Any]]]) -> Hung:
@@ -282,7 +284,9 @@ def _hinge(table: Table, name: str, kind: str) -> Hinge:
 
 
 def check_not_steered(table: Table) -> None:
-    """Fails for keys of a wheel that mean nothing unless it is steered."""
+    """Fails for keys of a wheel that mean nothing unless it is steered, and for one that was to steer it."""
+    if typed := table.mistyped("steered"):
+        table.fail(typed, "is no known key here; did you mean steered?")
     for key in STEERED_ALONE:
         if table.peek(key) is not None:
             table.fail(key, "has a meaning for a steered wheel alone; give steered, or take it out")
@@ -301,10 +305,14 @@ def _parents_first(parts: Sequence[_Part]) -> list[_Part]:
     """The same in an order in which each parent comes before its bodies; else as they are in the file."""
     names = [CARRIAGE, *(part.hinge.name for part in parts)]
     for part in parts:
+        key = "body" if part.hinge.form == "wheel" else "parent"
         if part.body["parent"] not in names:
-            key = "body" if part.hinge.form == "wheel" else "parent"
+            others = [name for name in names if name != part.hinge.name]
             part.table.fail(key, f"there is no body {shown(part.body['parent'])}; "
-                            f"{nearest_of(part.body['parent'], names)}")
+                            f"{nearest_of(part.body['parent'], others)}")
+        if part.body["parent"] == part.hinge.name:
+            part.table.fail(key, f"is {shown(part.hinge.name)}, the body itself; let it hang on another body, or on "
+                            "the carriage")
     placed, found, left = {CARRIAGE}, list[_Part](), list(parts)
     while left:
         ready = next((part for part in left if part.body["parent"] in placed), None)

@@ -195,7 +195,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
                 if at % every == 0:
                     rows.take(plant, table[at - first, 0], at)
                 until = min(first + count, (at // every + 1) * every)
-                follow_rows(plant, table[at - first : until - first], watched)
+                follow_inputs(scene, plant, table[at - first : until - first], watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
@@ -217,7 +217,8 @@ def _stretches(first: int, count: int, every: int) -> list[int]:
     return sorted({first, *inside})
 
 
-def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+def follow_inputs(scene: Scene, plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]
+                  ) -> None:
     """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
     if not watched:
         plant.follow(table)

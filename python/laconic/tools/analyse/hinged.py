@@ -122,7 +122,11 @@ def _confirmed(tree: Tree, vehicle: ArticulatedVehicle, curvature: float, circle
     except Refused:
         return False
     off = [math.remainder(a - b, 2.0 * math.pi) for a, b in zip(angles, plant.motion().hinge_angle_rad, strict=True)]
-    return max([plant.changed_m_per_s, *map(abs, off), *map(abs, rates)]) < AGREEMENT * max(1.0, abs(omega))
+    allowed = AGREEMENT * max(1.0, abs(omega))
+    of_rates = [allowed + tree.rounding_per_s(limb, each.velocity) for limb, each
+                in zip(tree.limbs, circles, strict=True)]
+    return max([plant.changed_m_per_s, *map(abs, off)]) < allowed and all(
+        abs(rate) < most for rate, most in zip(rates, of_rates, strict=True))
 
 
 # ------------------------------------------------------------------------------------------- words
