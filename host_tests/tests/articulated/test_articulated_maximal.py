@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,9 @@ import pytest
 from articulated_runner import Case, input_words, run, start_words, vehicle_words
 from maximal_coordinates import Maximal, left_of, turned
 
-STATES = 150
+from laconic.base.paths import build_dir
+
+STATES, ALL_STATES = 150, 1000
 CASES = json.loads((Path(__file__).parents[1] / "data" / "articulated_reference.json").read_text())["cases"]
 VEHICLES = {case["name"]: case["vehicle"] for case in CASES if case["vehicle"]["bodies"][-1]["mass"] > 0}
 
@@ -138,8 +141,18 @@ def spins(vehicle: Case, heading: list[float], velocity: list[Any], yaw_rate: li
 
 @pytest.mark.parametrize("name", VEHICLES)
 def test_accelerations_are_those_of_maximal_coordinates(name: str) -> None:
-    vehicle, rng = VEHICLES[name], np.random.default_rng(7)
-    moments = [random_moment(vehicle, rng) for _ in range(STATES)]
+    assert_accelerations(name, STATES, 7)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", VEHICLES)
+def test_a_thousand_accelerations_are_those_of_maximal_coordinates(name: str) -> None:
+    assert_accelerations(name, ALL_STATES, 8)
+
+
+def assert_accelerations(name: str, states: int, seed: int) -> None:
+    vehicle, rng = VEHICLES[name], np.random.default_rng(seed)
+    moments = [random_moment(vehicle, rng) for _ in range(states)]
     words = vehicle_words(vehicle)
     for segment, start in moments:
         words += [*input_words(vehicle, segment), *start_words(start), "rates reactions"]
@@ -156,3 +169,13 @@ def test_accelerations_are_those_of_maximal_coordinates(name: str) -> None:
         off = np.abs(expected - np.concatenate(acceleration)).max() / max(1, np.abs(expected).max())
         assert off < 1e-11
         assert reactions[-1] < 1e-13  # what is left of the forces at body 0
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_a_million_steps_of_random_trees_end_and_never_become_nan(real: str) -> None:
+    program = build_dir() / "core_c" / "tests" / f"test_articulated_random_{real}"
+    if not program.is_file():
+        pytest.skip(f"{program.name} is not built")
+    found = subprocess.run([str(program), "1000000"], capture_output=True, text=True, timeout=600, check=False)
+    assert found.returncode == 0, found.stdout

@@ -74,7 +74,6 @@ def fails(tables: dict[str, Any], *words: str) -> None:
      ("vehicle.drive", "take it out")),
     (with_steered() | {"sensors": {"imu": {}}}, ("sensors", "take the table out")),
     (with_steered() | {"base": {"track_m": 1.0}}, ("base.track_m", "is no known key here")),
-    (with_steered() | {"run": {"duration_s": 1.0, "step_s": "auto", "tolerance": 1e-6}}, ("run.step_s", "give a step")),
     (with_steered() | {"outputs": {"signals": ["hinge_angle_rad[rear]"]}}, ("outputs.signals", "hinge_angle_rad")),
     (with_steered() | {"outputs": {"signals": ["nu_rad_per_s"]}}, ("outputs.signals", "there is no signal")),
     (with_steered() | {"outputs": {"signals": ["no_slip_margin_N"]}}, ("friction_coefficient",)),

@@ -22,7 +22,7 @@ from laconic.scene import Scene
 from laconic.scene.base import BaseTable
 from laconic.scene.hinge_signals import RATE, TWIST, VOLTAGE
 from laconic.scene.hinges import Hinge
-from laconic.simulation.articulated import follow_inputs, start_plant
+from laconic.simulation.articulated import follow_rows, start_plant
 from laconic.simulation.loads import Loads, centre_of
 from laconic.simulation.steering import Commands
 
@@ -224,7 +224,7 @@ class Hinged:
         table = self.commands.rows(self.steps, 1)
         if self.commands.refused:
             raise self.commands.refused
-        follow_inputs(self.scene, self.plant, table, self.watched)
+        follow_rows(self.plant, table, self.watched)
         self.row, self.steps, self.motion = table[-1, 1], self.steps + 1, self.plant.motion()
 
 

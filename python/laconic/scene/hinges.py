@@ -29,10 +29,10 @@ STEERED_ALONE = ("name", "scrub_m", "mass_kg", "yaw_inertia_kgm2", "steering_gai
                  "stop_low_rad", "stop_low_deg", "stop_high_rad", "stop_high_deg", "start_angle_rad",
                  "start_angle_deg", "start_rate_rad_per_s", "rate_limit_rad_per_s", "at_limit", "steering_motor")
 """Keys of a wheel that mean nothing unless it is steered."""
-MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
-              "rotor_inertia_kgm2")
 WITHOUT_HINGES = ("give a rigid vehicle, with [[vehicle.support]] in the place of casters and steered wheels, as "
                   "laconic import --no-hinges writes it")
+MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
+              "rotor_inertia_kgm2")
 COMMANDED = ("prescribed", "coordinated")
 OF_WHOLE_HINGES = ("twist zero", "twist jumps", "massless hinge", "coordinated too few", "steered too often",
                    "coordinated on body", "step beyond trail limit")

@@ -78,9 +78,6 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     known = {signal: name for name, of_name in input_signals(vehicle, hinges).items() for signal in of_name}
     parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known, hinges) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), method_names(), reals)
-    if parts["run"].get("tolerance") is not None:
-        top.fail("run.step_s", '"auto" is not found for vehicles with hinges yet; give a step in seconds, such as '
-                 "0.001")
     check_places(top, parts["inputs"])
     for each in parts["inputs"]:
         check_input(top, each, vehicle, parts["run"]["duration_s"])

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ from laconic.simulation.steering import Commands
 CHUNK = 2048             # steps whose inputs are made ready at once
 ALLOWED = 1e-9           # of the size of a start: what a projection may change of it by rounding
 IN_SINGLE = 1e-4
+PARTS = 3                # of a step, for the estimate of its error
+OF_DISTANCE = 2.0        # what a method of order 2 makes of a distance of parts of two thirds is 1.8
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
          "hinge_rate_rad_per_s", "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
 OF_MOTION = {"wheel_speed_rad_per_s", "wheel_angle_rad", "hinge_angle_rad", "hinge_rate_rad_per_s", "body_x_m",
@@ -58,6 +61,83 @@ def kept_signals_with_hinges(scene: Scene, given: Sequence[str]) -> tuple[str, .
     known = input_signals(scene.vehicle, scene.hinges) | output_signals_of(scene.vehicle, scene.hinges)
     kept = read_hinge_signals(Table(scene.path, "", {"signals": list(given)}), known)
     return kept or scene.outputs.signals or usual_signals_with_hinges(scene)
+
+
+@dataclass(frozen=True)
+class HingeErrorSizes:
+    """Sizes of an error of the state; of hinges and wheels that of the one farthest off."""
+
+    velocity_m_per_s: float
+    yaw_rate_rad_per_s: float
+    hinge_rate_rad_per_s: float
+    place_m: float
+    heading_rad: float
+    hinge_angle_rad: float
+    wheel_angle_rad: float
+
+
+HINGE_ERRORS = tuple(HingeErrorSizes.__dataclass_fields__)
+
+
+@dataclass(frozen=True)
+class HingeErrors:
+    """What is known of the error of a run with hinges."""
+
+    now: HingeErrorSizes
+    largest: HingeErrorSizes  # of the rows of the run
+    unknown: int              # steps whose parts were refused: then the errors are infinite
+
+
+class Parts:
+    """The same run in steps of a third, whose distance from it estimates its error.
+
+    A third and no half, since `auto` divides steps by powers of two: halves could be the same steps again. What is off
+    by a method of order 2 or more is at most twice the distance. Inputs are those of the whole steps, divided.
+    """
+
+    def __init__(self, plant: ArticulatedPlant):
+        self._plant, self._whole = plant.twin(plant.step_s / PARTS), plant
+        self._rows, self._unknown = list[list[float]](), 0
+
+    def follow(self, table: np.ndarray) -> None:
+        """The parts of steps that the run itself takes along these inputs."""
+        shares = np.arange(PARTS + 1) / PARTS
+        points = table[:, :1] + shares[None, :, None] * (table[:, 1:] - table[:, :1])
+        points[:, -1] = table[:, 1]
+        pairs = np.stack([points[:, :-1], points[:, 1:]], axis=2)
+        try:
+            if not self._unknown:
+                self._plant.follow(pairs.reshape(-1, 2, table.shape[2]))
+        except Refused:
+            self._unknown = -len(table)
+        self._unknown += len(table) if self._unknown else 0
+
+    def take(self) -> None:
+        """A row of what is known at this moment."""
+        self._rows.append(self._distance() if not self._unknown else [math.inf] * len(HINGE_ERRORS))
+
+    def _distance(self) -> list[float]:
+        a, b = self._whole.motion(), self._plant.motion()
+        found = {"velocity_m_per_s": _farthest([np.hypot(*(a.velocity_m_per_s - b.velocity_m_per_s))]),
+                 "place_m": math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)}
+        found |= {name: _farthest(np.subtract(getattr(a, name), getattr(b, name)))
+                  for name in HINGE_ERRORS if name not in found}
+        return [OF_DISTANCE * found[name] for name in HINGE_ERRORS]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """By name of a further column of outputs."""
+        table = np.array(self._rows, float).reshape(len(self._rows), len(HINGE_ERRORS))
+        return {f"estimated_error_{name}": column for name, column in zip(HINGE_ERRORS, table.T.copy(), strict=True)}
+
+    def read(self) -> HingeErrors:
+        """The errors of the last row, and the largest of all rows."""
+        table = np.array(self._rows, float)
+        return HingeErrors(HingeErrorSizes(*table[-1].tolist()), HingeErrorSizes(*table.max(axis=0).tolist()),
+                           self._unknown)
+
+
+def _farthest(differences: Any) -> float:
+    return float(np.max(np.abs(differences), initial=0.0))
 
 
 class Rows:
@@ -176,14 +256,33 @@ def rolling_rates(vehicle: ArticulatedVehicle, velocity: Sequence[float], yaw_ra
     return found
 
 
-def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advance
-                    ) -> tuple[ArticulatedPlant, Rows, Commands, float, Refused | None]:
+@dataclass
+class HingedRun:
+    """What a run of a scene with hinges leaves."""
+
+    plant: ArticulatedPlant
+    rows: Rows
+    commands: Commands
+    parts: Parts | None  # where the error was estimated
+    seconds: float = 0.0
+    refused: Refused | None = None
+
+    def take(self, row: np.ndarray, tick: int) -> None:
+        """A row of outputs, and of errors."""
+        self.rows.take(self.plant, row, tick)
+        if self.parts:
+            self.parts.take()
+
+
+def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advance, estimated: bool = False
+                    ) -> HingedRun:
     """Steps a scene to its end, or to a step that is refused, with a row before each `every` steps and at the end."""
     core, inputs = scene.core(), scene.inputs_on_grid()
     vehicle = scene.articulated_vehicle(core)
     commands = Commands(scene, vehicle, inputs)
     plant = start_plant(scene, vehicle, commands.first_row())
-    rows, refused, last = Rows(scene, vehicle, inputs, kept), None, None
+    parts = Parts(plant) if estimated else None
+    run, last = HingedRun(plant, Rows(scene, vehicle, inputs, kept), commands, parts), None
     began = time.perf_counter()
     watched = [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
     try:
@@ -193,22 +292,23 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
             last, count = table[-1, 1] if len(table) else last, len(table)
             for at in _stretches(first, count, every):
                 if at % every == 0:
-                    rows.take(plant, table[at - first, 0], at)
+                    run.take(table[at - first, 0], at)
                 until = min(first + count, (at // every + 1) * every)
-                follow_inputs(scene, plant, table[at - first : until - first], watched)
+                _follow(run, table[at - first : until - first], watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
-        rows.take(plant, commands.row_at(inputs.steps, last), inputs.steps)
+        run.take(commands.row_at(inputs.steps, last), inputs.steps)
     except Refused as why:
         if not plant.steps:
             raise why if str(scene.path) in why.message else scene.refusal_in_file(why, "at t = 0 s") from None
         at_s = f"at t = {plant.steps * scene.run.step_s:g} s"
-        refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
-        if len(rows) <= -(-plant.steps // every):
+        run.refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
+        if len(run.rows) <= -(-plant.steps // every):
             with suppress(Refused):  # of reactions at a posture that has none
-                rows.take(plant, commands.row_at(plant.steps, None), plant.steps)
-    return plant, rows, commands, time.perf_counter() - began, refused
+                run.take(commands.row_at(plant.steps, None), plant.steps)
+    run.seconds = time.perf_counter() - began
+    return run
 
 
 def _stretches(first: int, count: int, every: int) -> list[int]:
@@ -217,8 +317,17 @@ def _stretches(first: int, count: int, every: int) -> list[int]:
     return sorted({first, *inside})
 
 
-def follow_inputs(scene: Scene, plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]
-                  ) -> None:
+def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+    """As follow_rows(); what estimates errors follows, too, as far as the run came."""
+    plant, before_all = run.plant, run.plant.steps
+    try:
+        follow_rows(plant, table, watched)
+    finally:
+        if run.parts:
+            run.parts.follow(table[: plant.steps - before_all])
+
+
+def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
     """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
     if not watched:
         plant.follow(table)

@@ -16,7 +16,7 @@ from laconic.core.articulated import ArticulatedPlant, method_names
 from laconic.core.articulated_input import member_of
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
-from laconic.simulation.articulated import follow_inputs, given_start, start_plant
+from laconic.simulation.articulated import follow_rows, given_start, start_plant
 from laconic.simulation.steering import Commands
 
 HINGED_FRAMES = ("VELOCITY", "HINGE_ANGLE", "HINGE_RATE")
@@ -65,7 +65,7 @@ class HingedTwin:
 
     def _take(self, row: np.ndarray) -> None:
         try:
-            follow_inputs(self.scene, self.plant, row[None], self._watched)
+            follow_rows(self.plant, row[None], self._watched)
         except Refused as refused:
             if refused.status == "hinge at stop":
                 raise RunEnds(f"{self.scene.path}: at t = {self.plant.steps * self.scene.run.step_s:g} s: "

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from laconic.base.outputs import claims, make_folder
+from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput, reason_of
 from laconic.robot.bags.messages import store
 from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
@@ -181,6 +182,7 @@ def _span(indent: str, first_ns: int, length_ns: int) -> list[str]:
 ODOM, BASE, MAP, IMU = (FRAMES[name] for name in ("odom", "base", "map", "imu"))
 ODOMETRY, TRANSFORMS = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 JOINTS, IMU_TYPE, NUMBERS = "sensor_msgs/msg/JointState", "sensor_msgs/msg/Imu", "std_msgs/msg/Float64MultiArray"
+HINGE_ANGLE, HINGE_RATE = "hinge_angle_rad", "hinge_rate_rad_per_s"
 UNKNOWN_VARIANCE = -1.0        # in the first place of a covariance: that quantity is not measured
 
 
@@ -189,10 +191,12 @@ def needed_signals(scene: Scene) -> tuple[str, ...]:
     from laconic.simulation.run import input_signals, sensor_signals
 
     names = ["x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "velocity_body_m_per_s[1]", "velocity_body_m_per_s[2]"]
+    names += [f"{name}[{hinge.name}]" for hinge in scene.hinges for name in (HINGE_ANGLE, HINGE_RATE)]
     for wheel in range(1, scene.wheel_count + 1):
         names += [f"wheel_angle_rad[{wheel}]", f"wheel_speed_rad_per_s[{wheel}]"]
     voltages = [each for each in input_signals(scene) if each.startswith("voltage_V")]
-    return (*names, *voltages, *(each for each in sensor_signals(scene) if each.startswith("imu_")))
+    shown = () if scene.has_hinges else sensor_signals(scene)
+    return (*names, *voltages, *(each for each in shown if each.startswith("imu_")))
 
 
 class RunTopics:
@@ -201,10 +205,11 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        self.joints = usual_joints(scene.wheel_count)
-        core = scene.core()
-        self._centre = centre_of_mass(core, core.vehicle(scene.vehicle))
-        self._rolling = _rolling(scene)
+        self.joints = [*usual_joints(scene.wheel_count), *(f"{hinge.name}_joint" for hinge in scene.hinges)]
+        core, carriage = scene.core(), carriage_of(scene)
+        self._centre = centre_of_mass(core, core.vehicle(carriage))
+        self._rolling = _rolling(scene, carriage)
+        self._on_carriage = [at for at, wheel in enumerate(scene.vehicle["wheel"]) if is_of_carriage(wheel)]
         self._angles: np.ndarray | None = None
         self._odom: np.ndarray | None = None
         self._before_s = 0.0
@@ -225,10 +230,11 @@ class RunTopics:
         if angles is not None or speeds is not None:
             nothing = np.zeros(0)
             self.bag.write("/joint_states", JOINTS, stamp_ns, self.types[JOINTS](
-                self._header(stamp, ""), self.joints, nothing if angles is None else angles,
-                nothing if speeds is None else speeds, nothing))
+                self._header(stamp, ""), self.joints, nothing if angles is None else
+                np.append(angles, self._of_hinges(signals, HINGE_ANGLE)), nothing if speeds is None else
+                np.append(speeds, self._of_hinges(signals, HINGE_RATE)), nothing))
         if angles is not None and self._rolling is not None:
-            self._odometry(stamp_ns, stamp, time_s, angles, signals)
+            self._odometry(stamp_ns, stamp, time_s, angles[self._on_carriage], signals)
         rate = signals.get("imu_yaw_rate_rad_per_s", signals.get("yaw_rate_rad_per_s"))
         if rate is not None:
             self._imu(stamp_ns, stamp, rate, signals)
@@ -240,6 +246,9 @@ class RunTopics:
     def _of_wheels(self, signals: Mapping[str, float], name: str) -> np.ndarray | None:
         values = [signals.get(f"{name}[{number}]") for number in range(1, self.scene.wheel_count + 1)]
         return np.array(values, float) if values and None not in values else None
+
+    def _of_hinges(self, signals: Mapping[str, float], name: str) -> list[float]:
+        return [signals.get(f"{name}[{hinge.name}]", math.nan) for hinge in self.scene.hinges]
 
     def _header(self, stamp: Any, frame: str) -> Any:
         return self.types["std_msgs/msg/Header"](stamp, frame)
@@ -302,12 +311,24 @@ class RunTopics:
             vector(float(ahead or 0.0), float(left or 0.0), 0.0), unknown if ahead is None else known))
 
 
-def _rolling(scene: Scene) -> Rolling | None:
-    """None where the wheels do not determine the motion: then there is no odometry."""
-    if not scene.vehicle["wheel"]:
+def carriage_of(scene: Scene) -> dict[str, Any]:
+    """The vehicle, of one with hinges body 0 alone with its own wheels."""
+    wheels = [{key: value for key, value in wheel.items() if key != "body"} for wheel in scene.vehicle["wheel"]
+              if is_of_carriage(wheel)]
+    return {key: value for key, value in scene.vehicle.items() if key != "body"} | {"wheel": wheels}
+
+
+def is_of_carriage(wheel: Mapping[str, Any]) -> bool:
+    """Whether a wheel of a scene is on body 0."""
+    return bool(wheel.get("body", CARRIAGE) == CARRIAGE)
+
+
+def _rolling(scene: Scene, carriage: Mapping[str, Any]) -> Rolling | None:
+    """None where the wheels of the carriage do not determine the motion: then there is no odometry."""
+    if not carriage["wheel"]:
         return None
     try:
-        return rolling_of(scene.core(), scene.vehicle, scene.path)
+        return rolling_of(scene.core(), carriage, scene.path)
     except BadInput:
         return None
 
