@@ -166,27 +166,33 @@ def values_with_hinges(plant: ArticulatedPlant, frame: Frame, group: int) -> dic
     return {f"{stem}_{k}": float(wrapped(value) if is_angle else value) for k, value in enumerate(three, 1)}
 
 
+def resting_row(twin: HingedTwin) -> np.ndarray:
+    """The inputs of a node before the first command: rates and twist of the start."""
+    row = np.asarray(twin.first.astype(twin.core.dtype))
+    row[: member_of(twin.core, "base")[1]] = 0
+    return row
+
+
 class Steering:
     """Sends the scaled commands of hinges behind the voltages of a step."""
 
     def __init__(self, node: NodeClient, twin: HingedTwin):
         self.node, self.core, self.overranges = node, twin.core, 0
         self._vehicle, self._frame = twin.vehicle, wire()["STEERING"]
-        self._now = twin.first.astype(twin.core.dtype)
-        self._now[: member_of(twin.core, "base")[1]] = 0
+        self._now = resting_row(twin)
         self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
         kinds = [hinge.kind for hinge in twin.scene.hinges]
         self.pages = [page + first for first, kind in ((0, "prescribed"), (3, "motor")) for page in range(3)
                       if kind in kinds[WHEELS_A_GROUP * page : WHEELS_A_GROUP * (page + 1)]]
         self.pages += [TWIST_PAGE] if twin.vehicle.is_coordinated else []
 
-    def send(self, wanted: np.ndarray, base: np.ndarray) -> np.ndarray:
+    def send(self, wanted: np.ndarray, base: np.ndarray, *, sync: bool = True) -> np.ndarray:
         """Inputs that the node makes of all, at the start and end of the step. `wanted`: those of the scene; `base`:
         what the node makes of the voltages."""
         start, end = self._now.copy(), self._now.copy()
         start[: len(base)] = end[: len(base)] = base
         for page in self.pages:
-            numbers = self._send_page(page, wanted, sync=page == self.pages[-1])
+            numbers = self._send_page(page, wanted, sync=sync and page == self.pages[-1])
             if page == TWIST_PAGE:
                 end[self._at["twist"] : self._at["twist"] + 3] = self._rolling(numbers)
                 continue
@@ -233,6 +239,20 @@ class Steering:
             if along * along <= limit * limit * square * _dot(at_com, at_com):
                 at_com = at_com - along / square * held
         return np.array([at_com[0] + at_com[2] * com_y, at_com[1] - at_com[2] * com_x, at_com[2]])
+
+
+def run_commanded(plant: ArticulatedPlant, now: np.ndarray, command: np.ndarray | None, steps: int) -> np.ndarray:
+    """So many steps as the node takes them; the inputs that act then. With a new command (inputs at start and end) the
+    first goes from the present rates and twist to its own, and later ones hold them."""
+    if command is not None and steps > 0:
+        start = command[1].copy()
+        for name in ("hinge_rate_rad_per_s", "twist"):
+            at, length = member_of(plant.core, name)
+            start[at : at + length] = now[at : at + length]
+        plant.follow(np.array([[start, command[1]]]))
+        now, steps = command[1], steps - 1
+    plant.run(now, steps)
+    return now
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> Any:
