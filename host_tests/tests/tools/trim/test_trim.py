@@ -167,6 +167,7 @@ def test_only_the_scenes_method_is_linked_and_no_preparation(workshop: Workshop)
     assert not [name for name in symbols if "prepare" in name]
 
 
+@pytest.mark.nightly
 @needs_board
 def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(workshop: Workshop):
     row = board_row(workshop, M4F, Variant(read_scene("s1").with_run(method=EXPLICIT), "single", "-Os", True))
