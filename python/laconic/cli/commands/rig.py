@@ -97,9 +97,8 @@ def drive(scene: Scene, options: Options) -> int:
     from laconic.can.rig.run import run
     from laconic.can.rig.scaled import read_tolerances
 
-    if scene.has_hinges and (options.bag or options.replay):
-        raise BadInput(f"{scene.path}: --{'bag' if options.bag else 'replay'} does not take vehicles with hinges yet; "
-                       "leave it out")
+    if scene.has_hinges and options.bag:
+        raise BadInput(f"{scene.path}: --bag does not take vehicles with hinges yet; leave it out")
     began = time.perf_counter()
     if options.replay is not None:
         goes_with("--replay", "--lockstep", "--channel", "--id-base", "--method", "--real", "--tolerance", "--junit",
