@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 @one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")
-@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
+@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc, .mf4.")
 @recorded_options
 @click.option("--live", is_flag=True, help="Show the frames while it plays.")
 @click.option("--eds", type=OutputFile(".eds"), metavar="FILE",

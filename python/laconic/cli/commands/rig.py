@@ -54,7 +54,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's; that of the node.")
 @click.option("--tolerance", "tolerances", multiple=True, metavar="SIGNAL=VALUE",
               help="Allowed difference; half the resolution of the signal's frame where none is given.")
-@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
+@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc, .mf4.")
 @click.option("--replay", type=InputPath(), help="Judge a log of a scaled lockstep run, without a node.")
 @click.option("--key", type=InputPath(), help="File with the key of a node that takes commands with codes alone.")
 @recorded_options
