@@ -39,8 +39,7 @@ void laconic_articulated_drive_kept(articulated_drive *drive, const laconic_arti
 /* Cubics and flags of a course whose ends are set and that is not constant. */
 void laconic_articulated_course_of(articulated_course *course, const laconic_articulated_model *m);
 
-void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course,
-                                      const laconic_articulated_model *m);
+void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course);
 void laconic_articulated_move_moment(articulated_moment *moment, const articulated_course *course,
                                      const laconic_articulated_model *m, real at);
 
@@ -87,14 +86,18 @@ static inline direction direction_of_heading(const laconic_heading *heading) {
     return laconic_direction_of_binary_angle(heading->fraction);
 }
 
-/* Directions of all hinges, and the angles of those with springs. */
+/* Direction of hinge b + 1, and its angle where it has a spring. */
+INLINE void take_hinge_of(articulated_sweep *s, const laconic_articulated_model *m,
+                          const laconic_articulated_state *state, int32_t b) {
+    s->toward[b] = direction_of_binary_angle(state->hinge[b].fraction);
+    s->angle_rad[b] = R(0);
+    if (m->link[b].stiffness_Nm > R(0)) s->angle_rad[b] = heading_unwrapped(&state->hinge[b]) - m->link[b].rest_rad;
+}
+
 INLINE void take_posture_of(articulated_sweep *s, const laconic_articulated_model *m,
                             const laconic_articulated_state *state) {
-    for (int32_t b = 0; b < m->body_count; b++) {
-        s->toward[b] = direction_of_binary_angle(state->hinge[b].fraction);
-        s->angle_rad[b] = R(0);
-        if (m->link[b].stiffness_Nm > R(0)) s->angle_rad[b] = heading_unwrapped(&state->hinge[b]) - m->link[b].rest_rad;
-    }
+    s->angle_rad[0] = R(0); /* where LACONIC_MAX_BODIES is 1, compilers doubt that the loop sets it */
+    for (int32_t b = 0; b < m->body_count; b++) take_hinge_of(s, m, state, b);
     forget_sizes(s, m);
 }
 

@@ -138,9 +138,7 @@ def test_a_reference_that_cannot_be_read_is_one_line(change, words: str, tmp_pat
     assert status == 2 and words in why and why.count("\n") == 1
 
 
-CAN = "--interface virtual --channel none"
 ELSEWHERE = {  # every other command that takes a scene, with what it needs in addition
-    "trim": "SCENE", "rig": f"SCENE {CAN} --lockstep", "play": f"SCENE {CAN} --drives canopen",
     "replay": "LOG SCENE", "identify": "LOG --scene SCENE -o FOLDER/f.toml",
     "optimise": "SCENE --free vehicle.mass_kg=1:2 --goal min:speed",
     "sweep": "SCENE --vary vehicle.mass_kg=1:2:3 -o FOLDER/sweep", "report": "--scene SCENE", "demo": "SCENE",
@@ -152,7 +150,7 @@ def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "ros2"}
+    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "trim", "ros2", "rig", "play"}
     assert takes - with_hinges == {*ELSEWHERE}
 
 
@@ -262,14 +260,13 @@ def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str) -> 
     from laconic.scene.ground import check_ideal_ground
     from laconic.scene.standing import standing_of
     from laconic.tools.enclosure.readings import check_enclosable
-    from laconic.tools.trim.scene_files import trimmed
     from laconic.tools.verify.reference import Reference
 
     scene = laconic.read_scene(name)
     calls = (lambda: laconic.Vehicle.of(scene), lambda: laconic.Vehicle(scene.vehicle), lambda: laconic.analyse(scene),
              lambda: scene.plant(scene.core()),
              lambda: scene.model(scene.core()), lambda: scene.c_start(scene.core()), lambda: standing_of(scene),
-             lambda: Reference(scene.vehicle), lambda: trimmed(scene, "single"), lambda: check_enclosable(scene),
+             lambda: Reference(scene.vehicle), lambda: check_enclosable(scene),
              lambda: check_ideal_ground(scene, "derive"))
     for call in calls:
         with pytest.raises(BadInput, match="hinges"):

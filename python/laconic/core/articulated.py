@@ -37,6 +37,7 @@ HINGES = ("free", "motor", "prescribed", "coordinated")
 CARRIAGE = "carriage"
 """The name of body 0."""
 NOT_NUMBERS = ("name", "parent", "hinge")
+NOTHING: Mapping[str, str] = {}
 ALWAYS = ("hinge", "hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2")
 NAME = re.compile(r"[^\W\d][\w-]*")  # of a body: it stands in brackets behind a signal
 
@@ -110,10 +111,15 @@ class ArticulatedVehicle(OwnMemory):
     """
 
     def __init__(self, table: Mapping[str, Any], real: str = "double"):
-        core = load(real)
+        self._build(load(real), table)
+        self.model, why = self.core.ffi.new("laconic_articulated_model *"), self.core.why()
+        self.core.check(self.core.lib.laconic_articulated_prepare(self.model, self.c, why), why)
+
+    def _build(self, core: Core, table: Mapping[str, Any], more: Mapping[str, str] = NOTHING) -> list[dict[str, Any]]:
+        """Fills `c` from a table; `more`: further keys of bodies, and what each is. Returns all bodies."""
         if not isinstance(table, Mapping):
             raise BadInput(f"vehicle: {shown(table)} is no table; give a mapping from keys to numbers")
-        bodies = [_body(core, name, each) for name, each in items("vehicle.body", table.get("body", ()))]
+        bodies = [_body(core, name, each, more) for name, each in items("vehicle.body", table.get("body", ()))]
         self.core, self.names = core, tuple(str(body["name"]) for body in bodies)
         _check_names(self.names)
         wheels = [dict(each) if isinstance(each, Mapping) else each
@@ -127,8 +133,7 @@ class ArticulatedVehicle(OwnMemory):
             self.c.wheel_body[at] = of_body
         for at, body in enumerate(bodies[: max_bodies(core)]):
             self._set_body(at, body)
-        self.model, why = core.ffi.new("laconic_articulated_model *"), core.why()
-        core.check(core.lib.laconic_articulated_prepare(self.model, self.c, why), why)
+        return bodies
 
     @classmethod
     def of(cls, scene: Scene) -> ArticulatedVehicle:
@@ -383,13 +388,13 @@ class ArticulatedPlant(OwnMemory):
         return values
 
 
-def _body(core: Core, name: str, given: Any) -> dict[str, Any]:
+def _body(core: Core, name: str, given: Any, more: Mapping[str, str]) -> dict[str, Any]:
     """One table of a body: its keys are known and there, and its numbers are numbers."""
     if not isinstance(given, Mapping):
         raise BadInput(f"{name}: {shown(given)} is no table; give a mapping from keys to numbers")
-    members = body_members(core)
+    members = (*body_members(core), *(key for key, kind in more.items() if kind == "number"))
     plain = with_radians(name, given, members)
-    known = (*NOT_NUMBERS, *members)
+    known = (*NOT_NUMBERS, *body_members(core), *more)
     if unknown := [key for key in plain if key not in known]:
         raise BadInput(f"{name}.{unknown[0]}: unknown key; {nearest_of(str(unknown[0]), known)}")
     for key in ALWAYS:
