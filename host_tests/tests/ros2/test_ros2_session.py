@@ -260,6 +260,7 @@ def test_a_machine_that_sleeps_is_told_and_not_made_up_for() -> None:
         assert rig.session.lateness.skipped_s == pytest.approx(30.0)
 
 
+@pytest.mark.nightly
 def test_a_long_run_prints_a_line_each_minute() -> None:
     with rig_of(rate_Hz=10.0, duration_s=130.0) as rig:
         rig.session.run()

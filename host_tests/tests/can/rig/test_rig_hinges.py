@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import can
@@ -17,6 +19,7 @@ from laconic.base.paths import scene_names
 from laconic.can.rig.boards import emulated_node, why_no_emulation
 from laconic.can.rig.buses import node_process, process_node, virtual_node
 from laconic.can.rig.choices import BOARDS
+from laconic.can.rig.free_judge import Free, judge_free_run
 from laconic.can.rig.hinged import HingedTwin, load_hinged
 from laconic.can.rig.judge import judge_same_bits, judge_scaled
 from laconic.can.rig.lockstep import LockstepRun, run_lockstep
@@ -118,6 +121,24 @@ def test_the_command_judges_them_like_every_scene(capsys: pytest.CaptureFixture[
     assert "same bits in 40 answers" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("name", ["f1tenth", "tricycle_agv", "tugger_train", "wheelchair"])
+def test_a_log_is_judged_again(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = tmp_path / "run.blf"
+    assert laconic(["rig", name, "--steps", "900", "--log", str(log)]) == 0
+    first = json.loads(shown(capsys, ["rig", name, "--steps", "900", "--json"]))
+    again = json.loads(shown(capsys, ["rig", name, "--replay", str(log), "--json"]))
+    worst = {each["name"]: each["worst"] for each in first["verdicts"]}
+    assert again["passed"] and all(worst[each["name"]] == each["worst"] for each in again["verdicts"]
+                                   if "." in each["name"])
+    assert again["figures"]["steps"] == 900
+
+
+def shown(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
+    capsys.readouterr()
+    assert laconic(arguments) == 0
+    return capsys.readouterr().out
+
+
 def test_a_car_whose_origin_is_off_its_axle_is_steered_by_whole_numbers() -> None:
     """Rounded, its twist would make the rear wheels slide: the node takes the nearest that lets them roll."""
     tables = tables_of("f1tenth")
@@ -128,6 +149,27 @@ def test_a_car_whose_origin_is_off_its_axle_is_steered_by_whole_numbers() -> Non
         with virtual_node(real) as node:
             judgement = judge_scaled(node, scene, 800, {})
         assert judgement.passed, judgement.verdicts
+
+
+@pytest.mark.parametrize("name, real", [("f1tenth", "double"), ("tricycle_agv", "single"), ("mir_like", "double"),
+                                        ("tugger_train", "double")])
+def test_a_free_run_lies_between_vehicles_with_every_possible_delay(name: str, real: str) -> None:
+    scene = read_scene(name).with_run(real=real)
+    with virtual_node(real) as node:
+        judgement = judge_free_run(node, scene, 9.0 if name == "tugger_train" else 4.0, 0, 100, {})
+    assert judgement.passed, judgement.verdicts
+    assert {"VELOCITY.ahead", "HINGE_ANGLE.hinge_angle_1"} <= {verdict.name for verdict in judgement.verdicts}
+
+
+def test_a_free_run_that_steers_otherwise_is_found_out() -> None:
+    """The judge is no yes-man: a vehicle that is told other rates than the frames carry fails."""
+    scene = read_scene("tugger_train")
+    with virtual_node() as node:
+        trial = Free(node, scene, 9.0, 0, 100, {})
+        trial.drive()
+    for at, (seen, rows) in enumerate(trial.run.commands):
+        trial.run.commands[at] = (seen, rows * 1.1)
+    assert not trial.judge().passed
 
 
 # ---- what ends a run or is refused
@@ -179,9 +221,8 @@ def test_a_torque_on_a_hinge_has_no_scaled_frame() -> None:
         assert judge_same_bits(node, scene, 100).passed
 
 
-@pytest.mark.parametrize("option", [["--free-run"], ["--bag", "out.mcap"]])
-def test_what_does_not_take_hinges_yet_says_so(option: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert laconic(["rig", "f1tenth", *option]) == 2
+def test_what_does_not_take_hinges_yet_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert laconic(["rig", "f1tenth", "--bag", "out.mcap"]) == 2
     assert "does not take vehicles with hinges yet" in capsys.readouterr().err
 
 

@@ -210,6 +210,7 @@ def told(last_words: list[str]) -> dict[str, int]:
     return {name: int(count) for name, _, count in lines}
 
 
+@pytest.mark.nightly
 def test_the_keys_holder_drives_and_nobody_else(key_files: tuple[str, str], capsys: pytest.CaptureFixture[str]):
     mine, other = key_files
     last_words: list[str] = []

@@ -11,7 +11,7 @@ import numpy as np
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import RunEnds
 from laconic.can.rig.parameters import Parameter, vehicle_parameters
-from laconic.can.rig.wire import WHEELS_A_GROUP, Frame, wire
+from laconic.can.rig.wire import WHEELS_A_GROUP, Field, Frame, wire
 from laconic.core.articulated import ArticulatedPlant, method_names
 from laconic.core.articulated_input import member_of
 from laconic.errors import BadInput, Refused
@@ -166,60 +166,45 @@ def values_with_hinges(plant: ArticulatedPlant, frame: Frame, group: int) -> dic
     return {f"{stem}_{k}": float(wrapped(value) if is_angle else value) for k, value in enumerate(three, 1)}
 
 
-class Steering:
-    """Sends the scaled commands of hinges behind the voltages of a step."""
+def resting_row(twin: HingedTwin) -> np.ndarray:
+    """The inputs of a node before the first command: rates and twist of the start."""
+    row = np.asarray(twin.first.astype(twin.core.dtype))
+    row[: member_of(twin.core, "base")[1]] = 0
+    return row
 
-    def __init__(self, node: NodeClient, twin: HingedTwin):
-        self.node, self.core, self.overranges = node, twin.core, 0
-        self._vehicle, self._frame = twin.vehicle, wire()["STEERING"]
-        self._now = twin.first.astype(twin.core.dtype)
-        self._now[: member_of(twin.core, "base")[1]] = 0
+
+class NodeInputs:
+    """What a node makes of the scaled commands: its inputs at the start and end of the next step, as rows."""
+
+    def __init__(self, twin: HingedTwin):
+        self.core, self._vehicle = twin.core, twin.vehicle
+        self._start = resting_row(twin)
+        self._end = self._start.copy()
         self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
-        kinds = [hinge.kind for hinge in twin.scene.hinges]
-        self.pages = [page + first for first, kind in ((0, "prescribed"), (3, "motor")) for page in range(3)
-                      if kind in kinds[WHEELS_A_GROUP * page : WHEELS_A_GROUP * (page + 1)]]
-        self.pages += [TWIST_PAGE] if twin.vehicle.is_coordinated else []
 
-    def send(self, wanted: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """Inputs that the node makes of all, at the start and end of the step. `wanted`: those of the scene; `base`:
-        what the node makes of the voltages."""
-        start, end = self._now.copy(), self._now.copy()
-        start[: len(base)] = end[: len(base)] = base
-        for page in self.pages:
-            numbers = self._send_page(page, wanted, sync=page == self.pages[-1])
-            if page == TWIST_PAGE:
-                end[self._at["twist"] : self._at["twist"] + 3] = self._rolling(numbers)
-                continue
-            first = WHEELS_A_GROUP * (page % 3)
-            count = min(WHEELS_A_GROUP, self._vehicle.body_count - first)
-            for row in (start, end) if page >= 3 else (end,):
-                at = self._at["hinge_voltage_V" if page >= 3 else "hinge_rate_rad_per_s"] + first
-                row[at : at + count] = numbers[:count]
-        self._now = end
-        return np.array([start, end])
+    def set_base(self, base: np.ndarray) -> None:
+        """The inputs of wheels and carriage, of both ends."""
+        self._start[: len(base)] = self._end[: len(base)] = base
 
-    def _send_page(self, page: int, wanted: np.ndarray, sync: bool) -> np.ndarray:
-        """One frame; the numbers that it carries, in the node's scalar type."""
-        stem = "twist" if page == TWIST_PAGE else "hinge_voltage" if page >= 3 else "hinge_rate"
-        first = 0 if page == TWIST_PAGE else WHEELS_A_GROUP * (page % 3)
-        signals = [self._frame.fields[f"{stem}_{first + k}"] for k in (1, 2, 3)]
-        raws = [signal.raw(value) for signal, value in zip(signals, self._wanted(page, first, wanted), strict=True)]
-        self.overranges += any(over for _, over in raws)
-        packed = {signal.name: raw for signal, (raw, _) in zip(signals, raws, strict=True)}
-        self.node.link.send(self._frame, self._frame.pack(page=page, sync=int(sync), **packed))
-        per_unit = self.core.dtype.type(round(1.0 / signals[0].scale))
-        return np.array([self.core.dtype.type(raw) / per_unit for raw, _ in raws])
-
-    def _wanted(self, page: int, first: int, wanted: np.ndarray) -> list[float]:
-        """Three numbers: voltages of the step's start, rates and twist of its end."""
+    def set_page(self, page: int, raws: Sequence[int]) -> None:
+        """The three raw numbers of one STEERING."""
+        real = self.core.dtype.type
+        per_unit = real(round(1.0 / signals_of_page(page)[0].scale))
+        numbers = np.array([real(raw) / per_unit for raw in raws])
         if page == TWIST_PAGE:
-            twist = wanted[1, self._at["twist"] : self._at["twist"] + 3]
-            largest = self._frame.fields["twist_1"]
-            size = float(np.abs(twist).max()) or 1.0
-            return [float(each) / size * largest.largest * largest.scale for each in twist]
-        at = self._at["hinge_voltage_V" if page >= 3 else "hinge_rate_rad_per_s"] + first
-        hinges = self._vehicle.body_count
-        return [float(wanted[int(page < 3), at + k]) if first + k < hinges else 0.0 for k in range(WHEELS_A_GROUP)]
+            self._end[self._at["twist"] : self._at["twist"] + 3] = self._rolling(numbers)
+            return
+        first = WHEELS_A_GROUP * (page % 3)
+        count = min(WHEELS_A_GROUP, self._vehicle.body_count - first)
+        for row in (self._start, self._end) if page >= 3 else (self._end,):
+            at = self._at["hinge_voltage_V" if page >= 3 else "hinge_rate_rad_per_s"] + first
+            row[at : at + count] = numbers[:count]
+
+    def stepped(self) -> np.ndarray:
+        """Those of the step that begins now, (2, numbers); later ones hold its end."""
+        rows = np.array([self._start, self._end])
+        self._start = self._end.copy()
+        return rows
 
     def _rolling(self, twist: np.ndarray) -> np.ndarray:
         """The nearest twist that the carriage's own wheels allow, in the node's own steps."""
@@ -233,6 +218,66 @@ class Steering:
             if along * along <= limit * limit * square * _dot(at_com, at_com):
                 at_com = at_com - along / square * held
         return np.array([at_com[0] + at_com[2] * com_y, at_com[1] - at_com[2] * com_x, at_com[2]])
+
+
+def signals_of_page(page: int) -> list[Field]:
+    """The three signals of a page of STEERING."""
+    stem = "twist" if page == TWIST_PAGE else "hinge_voltage" if page >= 3 else "hinge_rate"
+    first = 0 if page == TWIST_PAGE else WHEELS_A_GROUP * (page % 3)
+    return [wire()["STEERING"].fields[f"{stem}_{first + k}"] for k in (1, 2, 3)]
+
+
+class Steering:
+    """Sends the scaled commands of hinges behind the voltages of a step."""
+
+    def __init__(self, node: NodeClient, twin: HingedTwin):
+        self.node, self.overranges, self._inputs = node, 0, NodeInputs(twin)
+        self._vehicle, self._frame = twin.vehicle, wire()["STEERING"]
+        self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
+        kinds = [hinge.kind for hinge in twin.scene.hinges]
+        self.pages = [page + first for first, kind in ((0, "prescribed"), (3, "motor")) for page in range(3)
+                      if kind in kinds[WHEELS_A_GROUP * page : WHEELS_A_GROUP * (page + 1)]]
+        self.pages += [TWIST_PAGE] if twin.vehicle.is_coordinated else []
+
+    def send(self, wanted: np.ndarray, base: np.ndarray, *, sync: bool = True) -> np.ndarray:
+        """Inputs that the node makes of all, at the start and end of the step. `wanted`: those of the scene; `base`:
+        what the node makes of the voltages."""
+        self._inputs.set_base(base)
+        for page in self.pages:
+            signals = signals_of_page(page)
+            raws = [signal.raw(value) for signal, value in zip(signals, self._wanted(page, wanted), strict=True)]
+            self.overranges += any(over for _, over in raws)
+            packed = {signal.name: raw for signal, (raw, _) in zip(signals, raws, strict=True)}
+            ends = int(sync and page == self.pages[-1])
+            self.node.link.send(self._frame, self._frame.pack(page=page, sync=ends, **packed))
+            self._inputs.set_page(page, [raw for raw, _ in raws])
+        return self._inputs.stepped()
+
+    def _wanted(self, page: int, wanted: np.ndarray) -> list[float]:
+        """Three numbers: voltages of the step's start, rates and twist of its end."""
+        first = WHEELS_A_GROUP * (page % 3)
+        if page == TWIST_PAGE:
+            twist = wanted[1, self._at["twist"] : self._at["twist"] + 3]
+            largest = self._frame.fields["twist_1"]
+            size = float(np.abs(twist).max()) or 1.0
+            return [float(each) / size * largest.largest * largest.scale for each in twist]
+        at = self._at["hinge_voltage_V" if page >= 3 else "hinge_rate_rad_per_s"] + first
+        hinges = self._vehicle.body_count
+        return [float(wanted[int(page < 3), at + k]) if first + k < hinges else 0.0 for k in range(WHEELS_A_GROUP)]
+
+
+def run_commanded(plant: ArticulatedPlant, now: np.ndarray, command: np.ndarray | None, steps: int) -> np.ndarray:
+    """So many steps as the node takes them; the inputs that act then. With a new command (inputs at start and end) the
+    first goes from the present rates and twist to its own, and later ones hold them."""
+    if command is not None and steps > 0:
+        start = command[1].copy()
+        for name in ("hinge_rate_rad_per_s", "twist"):
+            at, length = member_of(plant.core, name)
+            start[at : at + length] = now[at : at + length]
+        plant.follow(np.array([[start, command[1]]]))
+        now, steps = command[1], steps - 1
+    plant.run(now, steps)
+    return now
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> Any:

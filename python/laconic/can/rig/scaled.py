@@ -120,9 +120,9 @@ class Held:
 
     overranges = 0
 
-    def send(self, voltages: Voltages, tick: int) -> np.ndarray:
-        """Voltages and the order to take one step; the row of input numbers that the node uses."""
-        return voltages.send(self.at(tick), sync=True)
+    def send(self, voltages: Voltages, tick: int, *, sync: bool = True) -> np.ndarray:
+        """Voltages and, with `sync`, the order to take one step; the row of input numbers that the node uses."""
+        return voltages.send(self.at(tick), sync=sync)
 
 
 class Hinged:
@@ -133,19 +133,23 @@ class Hinged:
         load_hinged(node, self.twin)
         self._steering = Steering(node, self.twin)
         self._rows = self.twin.steps(steps, moves=False)
+        self._tick, self._wanted = -1, np.array([self.twin.first, self.twin.first])
 
     @property
     def overranges(self) -> int:
         """Frames with a command beyond its range."""
         return self._steering.overranges
 
-    def send(self, voltages: Voltages, tick: int) -> np.ndarray:
-        """Voltages, commands of hinges, and the order to take one step; inputs of the node at its start and end."""
-        wanted = next(self._rows)
+    def send(self, voltages: Voltages, tick: int, *, sync: bool = True) -> np.ndarray:
+        """Voltages, commands of hinges and, with `sync`, the order to take one step. Inputs of the node at start and
+        end of the step that takes them. Ticks come in order; after the scene's end its last commands stay."""
+        while self._tick < tick:
+            self._tick, self._wanted = self._tick + 1, next(self._rows, self._wanted)
+        wanted = self._wanted
         volts = {f"voltage_V[{wheel + 1}]": float(wanted[0, self.twin.vehicle.slot(f"voltage_V[{wheel + 1}]")])
                  for wheel in range(self.twin.vehicle.wheel_count)}
-        base = voltages.send(volts, sync=not self._steering.pages)
-        return self._steering.send(wanted, base)
+        base = voltages.send(volts, sync=sync and not self._steering.pages)
+        return self._steering.send(wanted, base, sync=sync)
 
 
 class Voltages:
