@@ -329,6 +329,13 @@ def test_a_base_table_names_the_hinges_too() -> None:
         build_scene(scene_tables("robotino2").entries | {"base": {"steering_voltage_limit_V": 1.0}})
 
 
+def test_ground_with_friction_is_not_taken_for_ideal_ground() -> None:
+    scene = read_scene("f1tenth")
+    slippery = replace(scene, vehicle=scene.vehicle | {"ground": {"friction_coefficient": 0.5}})
+    with pytest.raises(BadInput, match="ground.friction_coefficient: laconic ros2 drives vehicles with hinges on ideal"):
+        base_of(slippery)
+
+
 def test_a_robot_whose_driven_wheels_hang_on_casters_is_refused() -> None:
     tables = scene_tables("mir_like").with_values({"vehicle.wheel[*].driven": False, "vehicle.caster[1].driven": True})
     tables.entries.pop("input", None)
