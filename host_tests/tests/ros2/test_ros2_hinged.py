@@ -332,7 +332,7 @@ def test_a_base_table_names_the_hinges_too() -> None:
 def test_ground_with_friction_is_not_taken_for_ideal_ground() -> None:
     scene = read_scene("f1tenth")
     slippery = replace(scene, vehicle=scene.vehicle | {"ground": {"friction_coefficient": 0.5}})
-    with pytest.raises(BadInput, match="ground.friction_coefficient: laconic ros2 drives vehicles with hinges on ideal"):
+    with pytest.raises(BadInput, match="ground.friction_coefficient: laconic ros2 drives vehicles with hinges"):
         base_of(slippery)
 
 
