@@ -62,7 +62,8 @@ def turn(scene: str, rng: random.Random, domain: int, end_s: float) -> tuple[tup
     """One robot among noise, and whether it obeys at the end: cycles and messages, and what was found."""
     from ros2_support import rig_of
 
-    with rig_of(scene, domain=domain, is_loopback=True) as rig:
+    kinds = ("cyclonedds",) if rng.random() < 0.5 else ("cyclonedds", "fastrtps")
+    with rig_of(scene, domain=domain, is_loopback=True, services_for=kinds) as rig:
         noise = Noise(rig, rng)
         for cycle in range(TURN):
             noise.send()
@@ -99,7 +100,8 @@ class Noise:
                                         of_service="clientid=1;")
             whole = message_class(f"{kind}_Request", 16, True)().serialize(use_version_2=False)
             self._writers.append((writer, bytes(whole)))
-        self._port = rig.session.participant.others._meta_port
+        others = rig.session.participant.others
+        self._port = others._meta_port if others else 7400
         self._packets = [packet(b"\1\x0f" + bytes(range(10)), b"", [
             data(bytes(4), SPDP, 1, b"\0\3\0\0\1\0\0\0"), heartbeat(bytes(4), SPDP, 1, 2, 1)])]
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

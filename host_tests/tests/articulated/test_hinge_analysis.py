@@ -242,3 +242,26 @@ def test_an_arm_on_a_spring_swings_as_fast_as_its_spring_and_inertia_say() -> No
     found = study_hinges(scene_with(tables), speeds_m_per_s=(0.5,))
     swing = math.sqrt(3.0 / (0.1 + 1.0 * 0.2**2))
     assert found.straight[0].eigenvalues_per_s[0] == pytest.approx(complex(0.0, swing), abs=1e-4)
+
+
+@pytest.mark.parametrize(("name", "curvature"), [("f1tenth", 0.5), ("tricycle_agv", 0.3), ("tugger_train", 0.2),
+                                                 ("mir_like", 0.4), ("frc_swerve_mk4i", 0.5), ("pr2_base", 1.0)])
+def test_the_voltages_of_a_turn_hold_its_speed_for_ten_seconds(name: str, curvature: float) -> None:
+    scene = laconic.read_scene(name)
+    turn = study_hinges(scene, curvatures_per_m=[curvature], speeds_m_per_s=[]).turns[0]
+    assert turn.confirmed and turn.held_by_V
+    vehicle = laconic.ArticulatedVehicle.of(scene)
+    tree = study_hinges(scene, speeds_m_per_s=[]).tree
+    velocity, omega = tree.twist(curvature)
+    there = velocity + 1j * omega * tree.centre
+    commands = {"steering_twist": [velocity.real, velocity.imag, omega]} if vehicle.is_coordinated else {}
+    plant = vehicle.plant(velocity_m_per_s=(there.real, there.imag), yaw_rate_rad_per_s=omega, step_s=0.01,
+                          hinge_angle_rad=[each.angle_rad for each in turn.circles], inputs=commands)
+    before = plant.motion()
+    plant.run({**commands, **turn.held_by_V}, steps=1000)
+    after = plant.motion()
+    assert after.velocity_m_per_s == pytest.approx(before.velocity_m_per_s, abs=1e-9)
+    assert after.hinge_angle_rad == pytest.approx(before.hinge_angle_rad, abs=1e-9)
+    assert abs(after.heading_rad - 10.0 * omega) < 1e-9
+    assert f"voltage_V[{1 if 'voltage_V[1]' in turn.held_by_V else 3}] = " in " ".join(
+        study_hinges(scene, curvatures_per_m=[curvature], speeds_m_per_s=[]).words["turns"])

@@ -17,6 +17,7 @@ import laconic
 from laconic.base.paths import SCENE_DIR, SOURCE_DIR
 from laconic.cli.main import run
 from laconic.errors import BadInput
+from laconic.fmu.hinges import left_out
 from laconic.robot.bags.messages import store
 from laconic.scene.scene_text import lines_of
 
@@ -137,9 +138,7 @@ def test_a_reference_that_cannot_be_read_is_one_line(change, words: str, tmp_pat
     assert status == 2 and words in why and why.count("\n") == 1
 
 
-CAN = "--interface virtual --channel none"
 ELSEWHERE = {  # every other command that takes a scene, with what it needs in addition
-    "trim": "SCENE", "rig": f"SCENE {CAN} --lockstep", "play": f"SCENE {CAN} --drives canopen",
     "replay": "LOG SCENE", "identify": "LOG --scene SCENE -o FOLDER/f.toml",
     "optimise": "SCENE --free vehicle.mass_kg=1:2 --goal min:speed",
     "sweep": "SCENE --vary vehicle.mass_kg=1:2:3 -o FOLDER/sweep", "report": "--scene SCENE", "demo": "SCENE",
@@ -151,7 +150,7 @@ def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "ros2"}
+    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "trim", "ros2", "rig", "play"}
     assert takes - with_hinges == {*ELSEWHERE}
 
 
@@ -261,14 +260,13 @@ def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str) -> 
     from laconic.scene.ground import check_ideal_ground
     from laconic.scene.standing import standing_of
     from laconic.tools.enclosure.readings import check_enclosable
-    from laconic.tools.trim.scene_files import trimmed
     from laconic.tools.verify.reference import Reference
 
     scene = laconic.read_scene(name)
     calls = (lambda: laconic.Vehicle.of(scene), lambda: laconic.Vehicle(scene.vehicle), lambda: laconic.analyse(scene),
              lambda: scene.plant(scene.core()),
              lambda: scene.model(scene.core()), lambda: scene.c_start(scene.core()), lambda: standing_of(scene),
-             lambda: Reference(scene.vehicle), lambda: trimmed(scene, "single"), lambda: check_enclosable(scene),
+             lambda: Reference(scene.vehicle), lambda: check_enclosable(scene),
              lambda: check_ideal_ground(scene, "derive"))
     for call in calls:
         with pytest.raises(BadInput, match="hinges"):
@@ -283,6 +281,52 @@ def test_limits_that_held_a_command_back_are_told(tmp_path: Path, capsys: pytest
     status, _, warning = told(["simulate", str(path)], capsys)
     assert status == 0 and "front_left: the limit of its angle held the command back" in warning
     assert "front_left: the limit of its rate held the command back for" in warning
+
+
+def test_a_trailer_that_folds_is_an_event_of_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "folds.toml"
+    scene.write_text("""[vehicle]
+mass_kg = 20.0
+yaw_inertia_kgm2 = 0.8
+wheel_radius_m = 0.08
+wheel_inertia_kgm2 = 0.0
+[[vehicle.wheel]]
+kind = "fixed"
+x_m = 0.0
+y_m = 0.2
+axle_deg = -90.0
+[[vehicle.trailer]]
+name = "cart"
+hitch_x_m = -0.3
+length_m = 0.8
+track_m = 0.4
+radius_m = 0.1
+start_angle_deg = 20.0
+[initial]
+velocity_body_m_per_s = [-0.8, 0.0]
+[run]
+duration_s = 5.0
+step_s = 0.01
+""", encoding="utf-8")
+    status, _, why = told(["simulate", str(scene)], capsys)
+    assert status == 0 and "cart folds: its hinge angle is beyond 90° from t = " in why and "stop_low_deg" in why
+    status, text, _ = told(["simulate", str(scene), "--json"], capsys)
+    (fold,) = json.loads(text)["folded"]
+    assert fold["hinge"] == "cart" and 1.7 < fold["first_s"] < 1.8 and fold["most_rad"] > 3.0
+    ahead = scene.read_text(encoding="utf-8").replace("[-0.8, 0.0]", "[0.8, 0.0]")
+    scene.write_text(ahead, encoding="utf-8")
+    assert "folds" not in told(["simulate", str(scene)], capsys)[2]
+
+
+def test_commands_that_the_fmu_of_hinges_does_not_take_are_named_with_those_that_it_takes() -> None:
+    assert "the FMU has no inputs steering_curvature_per_m, which the scene steers by; give steering_twist" in left_out(
+        laconic.build_scene(tables_of("f1tenth", input=held(steering_curvature_per_m=0.2))))
+    tables = two_wheels()
+    tables["vehicle"]["wheel"].append({"kind": "fixed", "x_m": 0.5, "y_m": 0.0, "steered": "prescribed",
+                                       "name": "front", "driven": False, "rate_limit_rad_per_s": 1.0})
+    told_of = left_out(laconic.build_scene(tables | {"input": held(steering_angle_rad__front=0.2)}))
+    assert "the FMU has no limits" in told_of and "no inputs steering_angle_rad[front]" in told_of
+    assert "give steering_rate_rad_per_s of prescribed hinges" in told_of
 
 
 def test_a_run_that_is_refused_on_the_way_keeps_what_was_before(tmp_path: Path) -> None:

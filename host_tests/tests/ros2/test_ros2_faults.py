@@ -173,8 +173,9 @@ def test_the_watchdog_is_the_parameter_that_can_be_set() -> None:
         assert not whole.successful and rig.session.robots[0].watchdog_s == 0.2
 
 
-def test_reset_and_set_pose() -> None:
-    with rig_of() as rig:
+@pytest.mark.parametrize("services_for", [("cyclonedds",), ("cyclonedds", "fastrtps")])
+def test_reset_and_set_pose(services_for: tuple[str, ...]) -> None:
+    with rig_of(services_for=services_for) as rig:
         rig.drive(50, 0.2)
         pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
         pose.pose.pose.position.x, pose.pose.pose.position.y = 2.0, -1.0

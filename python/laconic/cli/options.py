@@ -49,6 +49,46 @@ class OutputBag(click.ParamType[Path]):
         return outputs.claim_folder(option, path)
 
 
+STORAGES = ("sqlite3", "mcap")  # of a rosbag2, by the names that ROS has for them
+
+
+class RerunTarget(click.ParamType[Path]):
+    """FILE.rrd, or nothing: the viewer itself, which is the path without a name."""
+
+    name = "rrd"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path, claimed for this option."""
+        if not str(value):
+            return Path()
+        path = Path(value)
+        if path.suffix.lower() != ".rrd":
+            raise BadInput(f"--rerun {value}: is no name of a recording; choose a name that ends in .rrd, or put "
+                           "--rerun last, to start the viewer")
+        return outputs.claim_file("--rerun", path, (".rrd",), ctx)
+
+
+def recorded_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a run that others look at: --bag, --storage, --foxglove, --rerun."""
+    for option in (
+            click.option("--rerun", type=RerunTarget(), is_flag=False, flag_value="", metavar="[FILE.rrd]",
+                         help="Show the run in the viewer of Rerun, or write it for it."),
+            click.option("--foxglove", type=OutputFile(".mcap"), metavar="FILE.mcap",
+                         help="Write the run for Foxglove, and FILE.layout.json, which arranges it there."),
+            click.option("--storage", type=click.Choice(STORAGES),
+                         help="Of the folder that --bag names.  [default: sqlite3]"),
+            click.option("--bag", type=OutputBag(), metavar="BAG",
+                         help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")):
+        command = option(command)
+    return command
+
+
+def check_storage(bag: Path | None, storage: str | None) -> None:
+    """BadInput for a storage without a folder that has one."""
+    if storage is not None and (bag is None or bag.suffix.lower() == ".mcap"):
+        raise BadInput(f"--storage {storage}: is of a rosbag2, which is a folder; give --bag FOLDER, or leave it out")
+
+
 class SceneName(click.ParamType[str]):
     """A scene by its path or by its name; it stays as it was given, for `read_scene`.
 

@@ -14,16 +14,22 @@ from laconic.ros2.messages import dds_name, new
 from laconic.ros2.motion import GRAVITY_M_PER_S2, Seen
 from laconic.ros2.names import (
     LATCHED,
+    NANO,
+    SURE,
     TRANSFORMS,
     USUAL,
     Middleware,
+    OdometryOut,
+    Out,
     Quality,
     RosNode,
+    between,
     polled,
     ros_type,
     topic_name,
+    transform,
+    upright,
 )
-from laconic.ros2.out import NANO, SURE, OdometryOut, Out, between, transform, upright
 
 DRIVE_TOPICS = ("ackermann_cmd", "drive")  # of cars: those of VESC's stack and of f1tenth_gym_ros
 ACKERMANN = "ackermann_msgs/msg/AckermannDriveStamped"

@@ -1,6 +1,6 @@
-"""Services for clients on Fast DDS, by a small RTPS participant of their own.
+"""Services for clients on Fast DDS and on cyclonedds, by a small RTPS participant of their own.
 
-Such clients know a response by an identity in the header of its packet: the request's writer and number. cyclonedds
+The former know a response by an identity in the header of its packet: the request's writer and number. cyclonedds
 neither shows nor sets it, so these services speak RTPS 2.3 themselves: discovery, and reliable readers and writers.
 Requests and responses are whole packets, below 64 KB. Everything is polled.
 """
@@ -126,7 +126,7 @@ class Server:
 
     request_topic: str
     response_topic: str
-    answer: Callable[[bytes], bytes | None]  # CDR of a request to that of its response; None: it cannot be read
+    answer: Callable[[bytes, bool], bytes | None]  # as Service._answered of laconic.ros2.wire
     reader: bytes = b""
     writer: Outgoing = field(default_factory=lambda: Outgoing(b"", deque(maxlen=MOST_KEPT)))
 
@@ -186,7 +186,7 @@ class Services:
     # ---- endpoints
 
     def serve(self, request: tuple[str, str, str], response: tuple[str, str, str],
-              answer: Callable[[bytes], bytes | None]) -> tuple[Guid, Guid]:
+              answer: Callable[[bytes, bool], bytes | None]) -> tuple[Guid, Guid]:
         """Adds a service by topic, type and user data of both; returns GUIDs of reader and writer."""
         number = len(self.servers) + 1
         made = Server(request[0], response[0], answer)
@@ -390,10 +390,8 @@ class Services:
     # ---- requests
 
     def _answered(self, server: Server, each: Submessage) -> int:
-        """Answers a request; one of cyclonedds is for the other services, which it finds, too."""
-        if self.peers[each.prefix].vendor == OF_CYCLONE or not each.payload:
-            return 0
-        response = server.answer(each.payload)
+        """Answers a request."""
+        response = server.answer(each.payload, self.peers[each.prefix].vendor == OF_CYCLONE)
         if response is None:
             return 0
         client = each.related[:16] if each.related[:16].strip(b"\0") else each.prefix + each.writer

@@ -21,9 +21,8 @@ from laconic.ros2.base import Base
 from laconic.ros2.hinged import base_of
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
-from laconic.ros2.names import Middleware, check_name, sent
+from laconic.ros2.names import NANO, Middleware, Out, check_name, diagnostics, sent
 from laconic.ros2.node import RobotNode, Told
-from laconic.ros2.out import NANO, Out, diagnostics
 from laconic.scene import Scene
 from laconic.scene.scene_text import lines_of
 from laconic.scene.table import read_toml

@@ -24,9 +24,9 @@ from laconic.errors import BadInput
 from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION, WITHOUT_HASHES
 from laconic.ros2.messages import dds_name, message_class, type_hash
 from laconic.ros2.names import LATCHED, MOST_AT_ONCE, MOST_DOMAIN, USUAL, Quality, polled, sent, topic_name
-from laconic.ros2.packets import OF_FAST
 from laconic.ros2.rtps import Guid, Services
 
+HEADER_BYTES = 20  # of a request of rmw_cyclonedds: encapsulation, client and number
 MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
@@ -35,7 +35,18 @@ THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInte
 </CycloneDDS>"""
 """Discovery by unicast on this machine alone, as ROS 2 does for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
 
+BY_NAMES = """<CycloneDDS><Domain Id="any"><Compatibility><IgnoreTypeInformation>1.15</IgnoreTypeInformation>
+</Compatibility></Domain></CycloneDDS>"""
+"""Types of Fast DDS (vendor 1.15) are compared by their names, as ROS does. From version 3 on, with ROS 2 Kilted, it
+also describes them. cyclonedds cannot read its sequences and arrays, so that those endpoints would not match."""
+
 _DOMAINS: dict[int, Domain] = {}  # of this process, which may configure each of them once
+
+
+def settings(is_local: bool) -> str:
+    """What configures a domain: CYCLONEDDS_URI, and what we add."""
+    given = [] if is_local else [each for each in [os.environ.get("CYCLONEDDS_URI", "")] if each]
+    return ",".join([*given, *([THIS_MACHINE] if is_local else []), BY_NAMES])
 
 
 class Participant:
@@ -48,8 +59,8 @@ class Participant:
         self.gid_bytes, self.domain = GID_BYTES[distribution], domain
         self.has_hashes, self.announces = distribution not in WITHOUT_HASHES, announces
         try:
-            if is_local and domain not in _DOMAINS:
-                _DOMAINS[domain] = Domain(domain, THIS_MACHINE)
+            if domain not in _DOMAINS:
+                _DOMAINS[domain] = Domain(domain, settings(is_local))
             self.dds = DomainParticipant(domain, qos=Qos(Policy.Userdata(b"enclave=/;")))
         except DDSException:
             raise BadInput(f"--domain: no participant can join domain {domain}; check the network and CYCLONEDDS_URI, "
@@ -62,8 +73,7 @@ class Participant:
         self._graph = self._endpoint(DataWriter, "ros_discovery_info", graph, LATCHED) if announces else None
         self._others = self._endpoint(DataReader, "ros_discovery_info", graph, Quality(100, is_latched=True))
         self._writers = BuiltinDataReader(self.dds, BuiltinTopicDcpsPublication)
-        self.has_services = "cyclonedds" in middlewares
-        self.others: Services | None = None  # for clients on Fast DDS
+        self.others: Services | None = None  # for clients on Fast DDS and on cyclonedds
         if "fastrtps" in middlewares:
             try:
                 self.others = Services(domain, is_local=is_local)
@@ -210,7 +220,7 @@ class Service:
     """Requests in, responses out.
 
     For rmw_cyclonedds client and number stand before the content. rmw_fastrtps has them in the headers of its packets,
-    which cyclonedds does not give to programs, so that `Services` answers them.
+    which cyclonedds does not give to programs, so that `Services` answers both.
     """
 
     def __init__(self, node: Node, name: str, kind: str, answer: Callable[[Any], Any]):
@@ -220,7 +230,7 @@ class Service:
         topics = topic_name("rq", node.namespace, name, "Request"), topic_name("rr", node.namespace, name, "Reply")
         self.reader = self.writer = None
         self.unreadable = 0
-        if participant.has_services:
+        if participant.others is None:
             make = partial(participant._endpoint, quality=USUAL, of_service=pair)
             self.reader = make(DataReader, topics[0], self._request)
             self.writer = make(DataWriter, topics[1], self._response)
@@ -234,14 +244,16 @@ class Service:
             node.other_readers.append(reader)
             node.other_writers.append(writer)
 
-    def _answered(self, request: bytes) -> bytes | None:
-        """The CDR of a response to that of a request; None for one that cannot be read."""
+    def _answered(self, request: bytes, has_header: bool) -> bytes | None:
+        """The CDR of a response to that of a request; None for one that cannot be read. `has_header`: of cyclonedds."""
+        start, whose = (HEADER_BYTES, request[4:HEADER_BYTES]) if has_header else (4, b"")
         try:
-            values = self.answer(message_class(self._request).deserialize(request, has_header=True))
+            values = self.answer(message_class(self._request).deserialize(request[:4] + request[start:]))
         except Exception:  # whatever cyclonedds raises for bytes that are not this type
             self.unreadable += 1
             return None
-        return bytes(message_class(self._response)(**values).serialize(use_version_2=False))
+        made = bytes(message_class(self._response)(**values).serialize(use_version_2=False))
+        return made[:4] + whose + made[4:]
 
     def poll(self, wrong: Callable[[str], None]) -> int:
         """Answers what has come, and returns how many requests that were."""
@@ -250,15 +262,7 @@ class Service:
             wrong(text)
         self.unreadable, count = 0, 0
         for request in polled(self.reader, lambda: wrong(text)) if self.reader is not None else ():
-            if self._is_of_fast(request):
-                continue  # which comes by another way, too
             values = self.answer(request)
             sent(self.writer, self._respond(client=request.client, sequence=request.sequence, **values))
             count += 1
         return count
-
-    def _is_of_fast(self, request: Any) -> bool:
-        """Whether a request is one of Fast DDS, by the vendor in the writer's GUID: its bytes are other numbers."""
-        assert self.reader is not None
-        writer = self.reader.get_matched_publication_data(request.sample_info.publication_handle)
-        return writer is not None and writer.key.bytes[:2] == OF_FAST

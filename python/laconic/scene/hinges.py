@@ -189,6 +189,7 @@ def _free_part(table: Table, hinge: Hinge, body: dict[str, Any], behind_m: float
     """A body on a free hinge with wheels on one axle behind it."""
     radius, inertia = read_number(table, "radius_m"), read_number(table, "wheel_inertia_kgm2")
     com = read_number(table, "com_x_m")
+    _check_mass(table, com)
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": "free", **body,
             "com_x_m": -behind_m if com is None else com,
             **{key: read_number(table, key) for key in ("mass_kg", "yaw_inertia_kgm2", "damping_Nms")}}
@@ -198,12 +199,20 @@ def _free_part(table: Table, hinge: Hinge, body: dict[str, Any], behind_m: float
     return _Part(table, body, hinge, wheels)
 
 
+def _check_mass(table: Table, *places_m: float | None) -> None:
+    """Fails for a centre of mass of a body that has none."""
+    for key, place in zip(("com_x_m", "com_y_m"), places_m, strict=False):
+        if place and not read_number(table, "mass_kg"):
+            table.fail(key, "has no effect on a body without mass; give mass_kg, or take it out")
+
+
 def _general(table: Table, number: int) -> _Part:
     kind = read_choice(table, "hinge")
     hinge = _hinge(table, read_name(table, None), kind)
     numbers = ("hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "stiffness_Nm")
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": kind,
             **{key: read_number(table, key) for key in numbers}, "rest_rad": table.angle("rest", 0.0)}
+    _check_mass(table, body["com_x_m"], body["com_y_m"])
     turned, motor = _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body)
     body, hinge = body | turned, replace(hinge, motor=motor)
     if hinge.is_commanded:

@@ -34,6 +34,7 @@ from laconic.scene.signals import (
 )
 from laconic.scene.table import Table
 from laconic.simulation.articulated import (
+    Folded,
     HingeErrors,
     input_signals_with_hinges,
     kept_signals_with_hinges,
@@ -63,6 +64,7 @@ class Trajectory:
     errors: Errors | HingeErrors | None = None  # at its end; None: the estimate was not asked for
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
     limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
+    folded: tuple[Folded, ...] = ()  # with hinges: trailers that turned by more than a right angle
     least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
 
     def __repr__(self) -> str:
@@ -235,7 +237,7 @@ def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, e
         ticks[-1] = plant.steps
     run = Trajectory(scene, plant.method, plant.steps, found.seconds, ticks * scene.run.step_s, rows.columns(),
                      refused=found.refused, limited=tuple(found.commands.limited.values()),
-                     least_margin=rows.least_margin)
+                     folded=rows.folded, least_margin=rows.least_margin)
     if found.parts and len(rows):
         run.errors, run.error_columns = found.parts.read(), found.parts.columns()
     if found.refused:

@@ -21,7 +21,7 @@ from laconic.core import load
 from laconic.core.articulated import ArticulatedVehicle
 from laconic.scene.hinges import file_has_hinges
 from laconic.tools.derive.printing import c_name
-from laconic.tools.derive.tree_check import RandomMoments, tree_core_difference, tree_forms_difference
+from laconic.tools.derive.scene_check import RandomMoments, tree_core_difference, tree_forms_difference
 from laconic.tools.derive.tree_printing import tree_c, tree_latex, tree_text
 from laconic.tools.derive.tree_system import Tree, derive_tree, energy_of_twists, tree_numbers
 

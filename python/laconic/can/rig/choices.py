@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-LOGS = (".blf", ".asc", ".log", ".trc")
+LOGS = (".blf", ".asc", ".log", ".trc", ".mf4")
 
 
 @dataclass(frozen=True)

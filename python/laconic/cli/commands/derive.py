@@ -72,7 +72,7 @@ def _of_example(name: str, form: str) -> tuple[str, dict[str, float]]:
 
 def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.scene import read_scene
-    from laconic.scene.ground import check_ideal_ground
+    from laconic.scene.ground import check_ideal_ground, check_rolling
     from laconic.tools.analyse.from_core import subject_of
     from laconic.tools.derive import printing
     from laconic.tools.derive.checks import forms_difference
@@ -81,6 +81,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
 
     scene = read_scene(given)
     if scene.has_hinges:
+        check_rolling(scene, "derive")
         return _of_tree(scene, form)
     check_ideal_ground(scene, "derive")
     subject = subject_of(scene)
@@ -98,7 +99,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
 def _of_tree(scene: Scene, form: str) -> tuple[str, dict[str, float]]:
     from laconic.core import load
     from laconic.tools.derive import tree_printing
-    from laconic.tools.derive.tree_check import tree_core_difference, tree_forms_difference
+    from laconic.tools.derive.scene_check import tree_core_difference, tree_forms_difference
     from laconic.tools.derive.tree_system import derive_tree, tree_numbers
 
     vehicle = scene.articulated_vehicle(load("double"))

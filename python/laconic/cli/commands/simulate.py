@@ -14,20 +14,22 @@ import numpy as np
 from laconic.base.outputs import is_stdout, opened
 from laconic.cli.options import (
     PICTURES,
-    OutputBag,
     OutputFile,
     SceneName,
     all_methods,
     belongs_to,
     check_step,
+    check_storage,
     json_flag,
     one_of,
+    recorded_options,
 )
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.core.estimate import Errors, ErrorSizes
 from laconic.errors import BadInput, Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
+from laconic.pictures.views.recorded import Recorded, signals_of, write_run
 from laconic.scene import Scene, read_scene
 from laconic.scene.axle_lines import nearly_one_line
 from laconic.scene.standing import Standing, standing_of
@@ -52,8 +54,7 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
 @click.option("--film", type=OutputFile(".svg"), metavar="F.svg",
               help="Draw a moving picture: the robot on its path, which a browser plays.")
-@click.option("--bag", type=OutputBag(), metavar="BAG",
-              help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")
+@recorded_options
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
 @click.option("--errors", "errors_wanted", is_flag=True,
@@ -62,8 +63,8 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Enclose the exact solution and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, film: Path | None, bag: Path | None, inputs_wanted: bool, errors_wanted: bool,
-            enclose_wanted: bool, json_wanted: bool) -> None:
+            plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool,
+            enclose_wanted: bool, json_wanted: bool, **views: Any) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
@@ -75,6 +76,8 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
+    check_storage(views["bag"], views["storage"])
+    recorded = Recorded(**views)
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
         not_with_hinges(given, enclose_wanted)
@@ -82,7 +85,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
                              *(drawn_with_hinges(given) if plot or film else ()),
                              *(signals_to_enclose(given) if enclose_wanted else ()),
-                             *(signals_of_bag(given) if bag else ())))
+                             *signals_of(recorded, given)))
     run = as_far_as_it_goes(given, tuple(signals), estimated=errors_wanted or not given.has_hinges)
     enclosure = enclosed(run) if enclose_wanted else None
     if out:
@@ -93,14 +96,17 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         simulation_picture(run, plot)
     if film:
         write_film(run, film)
-    if bag:
-        write_bag(run, bag)
+    for line in write_run(run, recorded) if recorded else ():
+        warn(line)
+    files = (out, plot, film, *recorded.files)
     if json_wanted:
-        click.echo(json.dumps(summary(run, out, plot, film, bag) | (enclosure.json if enclosure else {}), indent=1))
+        click.echo(json.dumps(summary(run, *files) | (enclosure.json if enclosure else {}), indent=1))
     elif not (out and is_stdout(out)):
-        print_summary(run, out, plot, film, bag, lines=enclosure.lines if enclosure else ())
+        print_summary(run, *files, lines=enclosure.lines if enclosure else ())
     for each in run.limited:
         warn(f"{given.path}: {each.in_words(given.run.step_s)}")
+    for fold in run.folded:
+        warn(f"{given.path}: {fold.in_words()}")
     if run.least_margin and run.least_margin[0] < 0.0:
         warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
              f"slip, by {-run.least_margin[0]:.3g} N")
@@ -111,7 +117,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
     if run.refused:
-        raise ResultFails(f"{run.refused}{kept_in(out, plot, film, bag)}")
+        raise ResultFails(f"{run.refused}{kept_in(*files)}")
 
 
 def not_with_hinges(scene: Scene, enclose_wanted: bool) -> None:
@@ -137,23 +143,6 @@ def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...], estimated: bool) -
         return simulate(scene, signals, progress=True, estimated=estimated)
     except RunRefused as cut_short:
         return cut_short.run
-
-
-def signals_of_bag(scene: Scene) -> tuple[str, ...]:
-    """The signals that the topics of a bag are made of."""
-    from laconic.robot.bags.run_topics import needed_signals
-
-    return needed_signals(scene)
-
-
-def write_bag(run: Trajectory, path: Path) -> None:
-    """The run as topics."""
-    from laconic.robot.bags.run_topics import open_bag, write_run
-
-    with open_bag(path) as bag:
-        topics = write_run(run, bag)
-    if not topics.has_odometry:
-        warn(f"--bag {path}: has no /odom and no /tf, as the wheels do not determine the motion")
 
 
 @dataclass(frozen=True)
@@ -223,7 +212,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else margin_json(run),
-        "limited": [asdict(each) for each in run.limited],
+        "limited": [asdict(each) for each in run.limited], "folded": [asdict(each) for each in run.folded],
         "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}

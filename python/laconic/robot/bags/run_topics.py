@@ -7,6 +7,7 @@ import math
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -45,6 +46,8 @@ def definition_of(kind: str) -> tuple[str, str]:
 class BagWriter(Protocol):
     """An open recording."""
 
+    path: Path
+
     def write(self, topic: str, kind: str, stamp_ns: int, message: Any) -> None:
         """A message of a topic, whose type is stated with its first one."""
         ...
@@ -62,13 +65,15 @@ def check_bag(option: str, path: Path) -> None:
 
 
 @contextmanager
-def open_bag(path: Path) -> Iterator[BagWriter]:
-    """A new recording by its name; it is completed whatever happens on the way."""
+def open_bag(path: Path, storage: str | None = None) -> Iterator[BagWriter]:
+    """A new recording by its name; it is completed whatever happens on the way. `storage` of a folder: sqlite3 (without
+    it) or mcap."""
     check_bag("--bag", path)
     claims().write(path)
     try:
         make_folder(path.parent if path.suffix.lower() == ".mcap" else path)
-        writer: BagWriter = McapBag(path) if path.suffix.lower() == ".mcap" else Rosbag2(path)
+        writer: BagWriter = McapBag(path) if path.suffix.lower() == ".mcap" else \
+            McapFolder(path) if storage == "mcap" else Rosbag2(path)
         try:
             yield writer
         finally:
@@ -88,6 +93,7 @@ class McapBag:
     def __init__(self, path: Path):
         from mcap.writer import CompressionType, Writer
 
+        self.path = path
         self._file = path.open("wb")
         self._writer = Writer(self._file, chunk_size=BYTES_OF_CHUNK, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="laconic")
@@ -112,28 +118,81 @@ class McapBag:
             self._file.close()
 
 
+@dataclass
+class Metadata:
+    """What metadata.yaml of a rosbag2 states."""
+
+    storage: str
+    file: str
+    topics: dict[str, str] = field(default_factory=dict)   # with their types
+    counts: dict[str, int] = field(default_factory=dict)
+    first_ns: int = 2**63 - 1
+    last_ns: int = 0
+
+    def take(self, topic: str, kind: str, stamp_ns: int) -> None:
+        """A message was written."""
+        self.topics.setdefault(topic, kind)
+        self.counts[topic] = self.counts.get(topic, 0) + 1
+        self.first_ns, self.last_ns = min(self.first_ns, stamp_ns), max(self.last_ns, stamp_ns)
+
+    def text(self) -> str:
+        """The file."""
+        total = sum(self.counts.values())
+        first = self.first_ns if total else 0
+        span = self.last_ns - first
+        head = ["rosbag2_bagfile_information:", "  version: 8", f"  storage_identifier: {self.storage}",
+                *_span("  ", first, span), f"  message_count: {total}", "  topics_with_message_count:"]
+        for topic, kind in self.topics.items():
+            head += ["    - topic_metadata:", f"        name: {topic}", f"        type: {kind}",
+                     "        serialization_format: cdr", "        offered_qos_profiles: []",
+                     f"        type_description_hash: {definition_of(kind)[1]}",
+                     f"      message_count: {self.counts[topic]}"]
+        name = self.file.replace('"', '\\"')
+        return "\n".join([
+            *head, '  compression_format: ""', '  compression_mode: ""', "  relative_file_paths:", f'    - "{name}"',
+            "  files:", f'    - path: "{name}"', *_span("      ", first, span), f"      message_count: {total}",
+            "  custom_data: ~", f"  ros_distro: {DISTRIBUTION}", ""])
+
+
+class McapFolder:
+    """A rosbag2 whose one file is an MCAP."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        self._metadata = Metadata("mcap", f"{path.resolve().name}_0.mcap")
+        self._bag = McapBag(path / self._metadata.file)
+
+    def write(self, topic: str, kind: str, stamp_ns: int, message: Any) -> None:
+        """A message of a topic."""
+        self._bag.write(topic, kind, stamp_ns, message)
+        self._metadata.take(topic, kind, stamp_ns)
+
+    def close(self) -> None:
+        """Writes metadata.yaml and closes the file."""
+        self._bag.close()
+        (self.path / "metadata.yaml").write_text(self._metadata.text(), encoding="utf-8")
+
+
 class Rosbag2:
     """A folder with one SQLite file and metadata.yaml."""
 
     def __init__(self, path: Path):
         self.path = path
-        self._name = f"{path.resolve().name}_0.db3"
-        self._base = sqlite3.connect(path / self._name)
+        self._metadata = Metadata("sqlite3", f"{path.resolve().name}_0.db3")
+        self._base = sqlite3.connect(path / self._metadata.file)
         self._base.executescript(TABLES)
         self._base.execute("INSERT INTO schema VALUES (4, ?)", (DISTRIBUTION,))
-        self._topics: dict[str, tuple[int, str]] = {}
-        self._counts: dict[str, int] = {}
-        self._first, self._last, self._pending = 2**63 - 1, 0, 0
+        self._keys: dict[str, int] = {}
+        self._pending = 0
         self._base.commit()
 
     def write(self, topic: str, kind: str, stamp_ns: int, message: Any) -> None:
         """A message of a topic."""
-        if topic not in self._topics:
+        if topic not in self._keys:
             self._add(topic, kind)
         self._base.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)",
-                           (self._topics[topic][0], stamp_ns, bytes(store().serialize_cdr(message, kind))))
-        self._counts[topic] += 1
-        self._first, self._last = min(self._first, stamp_ns), max(self._last, stamp_ns)
+                           (self._keys[topic], stamp_ns, bytes(store().serialize_cdr(message, kind))))
+        self._metadata.take(topic, kind, stamp_ns)
         self._pending += 1
         if self._pending >= COMMITTED_AT_ONCE:
             self._base.commit()
@@ -141,37 +200,21 @@ class Rosbag2:
 
     def _add(self, topic: str, kind: str) -> None:
         text, digest = definition_of(kind)
-        if kind not in {known for _, known in self._topics.values()}:
+        if kind not in self._metadata.topics.values():
             self._base.execute("INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition, "
                                "type_description_hash) VALUES (?, 'ros2msg', ?, ?)", (kind, text, digest))
         cursor = self._base.execute("INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, "
                                     "type_description_hash) VALUES (?, ?, 'cdr', '', ?)", (topic, kind, digest))
         assert cursor.lastrowid is not None
-        self._topics[topic], self._counts[topic] = (cursor.lastrowid, kind), 0
+        self._keys[topic] = cursor.lastrowid
 
     def close(self) -> None:
         """Writes metadata.yaml and closes the file."""
-        text = self._metadata()
+        text = self._metadata.text()
         self._base.execute("INSERT INTO metadata(metadata_version, metadata) VALUES (8, ?)", (text,))
         self._base.commit()
         self._base.close()
         (self.path / "metadata.yaml").write_text(text, encoding="utf-8")
-
-    def _metadata(self) -> str:
-        total = sum(self._counts.values())
-        first = self._first if total else 0
-        head = ["rosbag2_bagfile_information:", "  version: 8", "  storage_identifier: sqlite3",
-                *_span("  ", first, self._last - first), f"  message_count: {total}", "  topics_with_message_count:"]
-        for topic, (_, kind) in self._topics.items():
-            head += ["    - topic_metadata:", f"        name: {topic}", f"        type: {kind}",
-                     "        serialization_format: cdr", "        offered_qos_profiles: []",
-                     f"        type_description_hash: {definition_of(kind)[1]}",
-                     f"      message_count: {self._counts[topic]}"]
-        name = self._name.replace('"', '\\"')
-        return "\n".join([
-            *head, '  compression_format: ""', '  compression_mode: ""', "  relative_file_paths:", f'    - "{name}"',
-            "  files:", f'    - path: "{name}"', *_span("      ", first, self._last - first),
-            f"      message_count: {total}", "  custom_data: ~", f"  ros_distro: {DISTRIBUTION}", ""])
 
 
 def _span(indent: str, first_ns: int, length_ns: int) -> list[str]:
@@ -215,9 +258,11 @@ class RunTopics:
         self._before_s = 0.0
 
     @property
-    def has_odometry(self) -> bool:
-        """Whether the wheels determine the motion."""
-        return self._rolling is not None
+    def remarks(self) -> tuple[str, ...]:
+        """What the recording lacks."""
+        if self._rolling is not None:
+            return ()
+        return (f"--bag {self.bag.path}: has no /odom and no /tf, as the wheels do not determine the motion",)
 
     def take(self, time_s: float, signals: Mapping[str, float]) -> None:
         """One instant; what of the signals is not there leaves out its topic."""
@@ -331,17 +376,3 @@ def _rolling(scene: Scene, carriage: Mapping[str, Any]) -> Rolling | None:
         return rolling_of(scene.core(), carriage, scene.path)
     except BadInput:
         return None
-
-
-def write_run(run: Any, bag: BagWriter) -> RunTopics:
-    """All rows of a simulated run."""
-    from laconic.base.progress import progress_bar
-
-    topics = RunTopics(run.scene, bag)
-    names = [name for name in needed_signals(run.scene) if name in run.columns]
-    table = np.column_stack([run.columns[name] for name in names])
-    with progress_bar("writing the bag", len(run.time_s)) as advance:
-        for time_s, row in zip(run.time_s.tolist(), table.tolist(), strict=True):
-            topics.take(time_s, dict(zip(names, row, strict=True)))
-            advance(1)
-    return topics
