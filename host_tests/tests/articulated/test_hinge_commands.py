@@ -138,7 +138,7 @@ def test_a_reference_that_cannot_be_read_is_one_line(change, words: str, tmp_pat
 CAN = "--interface virtual --channel none"
 ELSEWHERE = {  # every other command that takes a scene, with what it needs in addition
     "derive": "SCENE", "trim": "SCENE", "rig": f"SCENE {CAN} --lockstep", "play": f"SCENE {CAN} --drives canopen",
-    "replay": "LOG SCENE", "identify": "LOG --scene SCENE -o FOLDER/f.toml",
+    "identify": "LOG --scene SCENE -o FOLDER/f.toml",
     "optimise": "SCENE --free vehicle.mass_kg=1:2 --goal min:speed",
     "sweep": "SCENE --vary vehicle.mass_kg=1:2:3 -o FOLDER/sweep", "report": "--scene SCENE", "demo": "SCENE",
     "ros2": "SCENE", "audit": "LOG SCENE", "logs": "LOG --scene SCENE"}
@@ -149,7 +149,7 @@ def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse"} and takes - with_hinges == {*ELSEWHERE}
+    assert with_hinges == {"simulate", "fmu", "analyse", "replay"} and takes - with_hinges == {*ELSEWHERE}
 
 
 @pytest.mark.parametrize("command", ELSEWHERE)
@@ -166,7 +166,7 @@ def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, n
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
 
 
-@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"], ["--bag", "x.mcap"]])
+@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"]])
 def test_options_of_simulate_that_know_no_hinges_are_refused(option: list[str], tmp_path: Path,
                                                             monkeypatch: pytest.MonkeyPatch,
                                                             capsys: pytest.CaptureFixture[str]) -> None:

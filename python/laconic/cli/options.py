@@ -115,7 +115,7 @@ def _check_rigid(path: Path, command: str) -> None:
 
     if file_has_hinges(path):
         raise BadInput(f"{path}: {command} does not take vehicles with hinges (steered wheels, casters, trailers) yet; "
-                       "use laconic simulate")
+                       "use laconic simulate, or laconic replay for logs")
 
 
 class ReferenceOrScene(click.ParamType[str]):

@@ -78,7 +78,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     recorded = Recorded(**views)
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
-        not_with_hinges(given, errors_wanted, enclose_wanted, recorded.bag)
+        not_with_hinges(given, errors_wanted, enclose_wanted)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
                              *(drawn_with_hinges(given) if plot or film else ()),
@@ -116,9 +116,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         raise ResultFails(f"{run.refused}{kept_in(*files)}")
 
 
-def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool, bag: Path | None) -> None:
+def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool) -> None:
     """BadInput for what a run of a vehicle with hinges does not have yet."""
-    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted), ("--bag", bag is not None)):
+    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted)):
         if is_wanted:
             raise BadInput(f"{scene.path}: {option} does not take vehicles with hinges yet; leave it out")
 

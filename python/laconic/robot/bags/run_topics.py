@@ -16,10 +16,11 @@ import numpy as np
 from laconic.base.outputs import claims, make_folder
 from laconic.errors import BadInput, reason_of
 from laconic.robot.bags.messages import store
-from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
+from laconic.robot.replay.rolling import Rolling, path_of, rolling_of
 from laconic.ros2 import FRAMES
 from laconic.scene import Scene
 from laconic.scene.base import usual_joints
+from laconic.simulation.loads import centre_of
 
 COMMITTED_AT_ONCE = 2000       # messages
 BYTES_OF_CHUNK = 1 << 18
@@ -234,7 +235,11 @@ def needed_signals(scene: Scene) -> tuple[str, ...]:
     names = ["x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "velocity_body_m_per_s[1]", "velocity_body_m_per_s[2]"]
     for wheel in range(1, scene.wheel_count + 1):
         names += [f"wheel_angle_rad[{wheel}]", f"wheel_speed_rad_per_s[{wheel}]"]
+    for hinge in scene.hinges:
+        names += [f"hinge_angle_rad[{hinge.name}]", f"hinge_rate_rad_per_s[{hinge.name}]"]
     voltages = [each for each in input_signals(scene) if each.startswith("voltage_V")]
+    if scene.has_hinges:
+        return (*names, *voltages)
     return (*names, *voltages, *(each for each in sensor_signals(scene) if each.startswith("imu_")))
 
 
@@ -244,9 +249,12 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        self.joints = usual_joints(scene.wheel_count)
-        core = scene.core()
-        self._centre = centre_of_mass(core, core.vehicle(scene.vehicle))
+        self.wheels = list(scene.base.joint_names) if scene.base and scene.base.joint_names else usual_joints(
+            scene.wheel_count)
+        self.hinges = [f"{hinge.name}_joint" for hinge in scene.hinges]
+        centre = centre_of(scene.vehicle)
+        self._centre = np.array([centre.real, centre.imag])
+        self._has_begun = False
         self._rolling = _rolling(scene)
         self._angles: np.ndarray | None = None
         self._odom: np.ndarray | None = None
@@ -257,21 +265,22 @@ class RunTopics:
         """What the recording lacks."""
         if self._rolling is not None:
             return ()
-        return (f"--bag {self.bag.path}: has no /odom and no /tf, as the wheels do not determine the motion",)
+        why = "odometry of vehicles with hinges is not summed up" if self.scene.has_hinges else \
+            "the wheels do not determine the motion"
+        return (f"--bag {self.bag.path}: has no /odom and no /tf, as {why}",)
 
     def take(self, time_s: float, signals: Mapping[str, float]) -> None:
         """One instant; what of the signals is not there leaves out its topic."""
         stamp_ns = round(time_s * 1e9)
         stamp = self.types["builtin_interfaces/msg/Time"](stamp_ns // 10**9, stamp_ns % 10**9)
+        if not self._has_begun:
+            self._fixed_frames(stamp_ns, stamp)
         if "x_m" in signals:
             self._ground_truth(stamp_ns, stamp, signals)
         angles = self._of_wheels(signals, "wheel_angle_rad")
         speeds = self._of_wheels(signals, "wheel_speed_rad_per_s")
         if angles is not None or speeds is not None:
-            nothing = np.zeros(0)
-            self.bag.write("/joint_states", JOINTS, stamp_ns, self.types[JOINTS](
-                self._header(stamp, ""), self.joints, nothing if angles is None else angles,
-                nothing if speeds is None else speeds, nothing))
+            self._joint_states(stamp_ns, stamp, angles, speeds, signals)
         if angles is not None and self._rolling is not None:
             self._odometry(stamp_ns, stamp, time_s, angles, signals)
         rate = signals.get("imu_yaw_rate_rad_per_s", signals.get("yaw_rate_rad_per_s"))
@@ -285,6 +294,28 @@ class RunTopics:
     def _of_wheels(self, signals: Mapping[str, float], name: str) -> np.ndarray | None:
         values = [signals.get(f"{name}[{number}]") for number in range(1, self.scene.wheel_count + 1)]
         return np.array(values, float) if values and None not in values else None
+
+    def _joint_states(self, stamp_ns: int, stamp: Any, angles: np.ndarray | None, speeds: np.ndarray | None,
+                      signals: Mapping[str, float]) -> None:
+        """Wheels, then hinges where their angles are known; a list without a value is empty."""
+        nothing, names = np.zeros(0), self.wheels
+        turned = [signals.get(f"hinge_angle_rad[{hinge.name}]") for hinge in self.scene.hinges]
+        if turned and None not in turned and angles is not None and speeds is not None:
+            rates = [signals.get(f"hinge_rate_rad_per_s[{hinge.name}]", 0.0) for hinge in self.scene.hinges]
+            names = [*self.wheels, *self.hinges]
+            angles, speeds = np.append(angles, np.array(turned, float)), np.append(speeds, np.array(rates, float))
+        self.bag.write("/joint_states", JOINTS, stamp_ns, self.types[JOINTS](
+            self._header(stamp, ""), names, nothing if angles is None else angles,
+            nothing if speeds is None else speeds, nothing))
+
+    def _fixed_frames(self, stamp_ns: int, stamp: Any) -> None:
+        """Where the IMU is on the robot."""
+        self._has_begun = True
+        table = self.scene.sensors.imu or {}
+        place = self.types["geometry_msgs/msg/Vector3"](table.get("x_m", 0.0), table.get("y_m", 0.0), 0.0)
+        self.bag.write("/tf_static", TRANSFORMS, stamp_ns, self.types[TRANSFORMS]([
+            self.types["geometry_msgs/msg/TransformStamped"](self._header(stamp, BASE), IMU, self.types[
+                "geometry_msgs/msg/Transform"](place, self._quaternion(table.get("heading_rad", 0.0))))]))
 
     def _header(self, stamp: Any, frame: str) -> Any:
         return self.types["std_msgs/msg/Header"](stamp, frame)
@@ -349,7 +380,7 @@ class RunTopics:
 
 def _rolling(scene: Scene) -> Rolling | None:
     """None where the wheels do not determine the motion: then there is no odometry."""
-    if not scene.vehicle["wheel"]:
+    if not scene.vehicle["wheel"] or scene.has_hinges:
         return None
     try:
         return rolling_of(scene.core(), scene.vehicle, scene.path)
