@@ -111,11 +111,11 @@ class SceneName(click.ParamType[str]):
 
 
 def _check_rigid(path: Path, command: str) -> None:
-    from laconic.scene.hinges import file_has_hinges  # loads the core
+    from laconic.scene.hinges import WITHOUT_HINGES, file_has_hinges  # loads the core
 
     if file_has_hinges(path):
         raise BadInput(f"{path}: {command} does not take vehicles with hinges (steered wheels, casters, trailers) yet; "
-                       "use laconic simulate, or laconic replay for logs")
+                       f"use laconic simulate, or {WITHOUT_HINGES}")
 
 
 class ReferenceOrScene(click.ParamType[str]):
@@ -218,13 +218,14 @@ def belongs_to(flag: str, is_on: bool, *options: str) -> None:
 
 
 def goes_with(flag: str, *options: str) -> None:
-    """BadInput for an option that was given beside a flag that makes no use of it."""
+    """BadInput for an option that was given beside a flag, or a scene in words, that makes no use of it."""
+    remedy = "leave one of them out" if flag.startswith("--") else "leave it out"
     context = click.get_current_context()
     for parameter in context.command.params:
         given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
         name = max(parameter.opts, key=len)
         if given and isinstance(parameter, click.Option) and name != flag and name not in options:
-            raise BadInput(f"{name}: has no meaning beside {flag}; leave one of them out")
+            raise BadInput(f"{name}: has no meaning beside {flag}; {remedy}")
 
 
 def check_step(step_s: float | None) -> None:

@@ -34,6 +34,8 @@ from laconic.scene.signals import (
 )
 from laconic.scene.table import Table
 from laconic.simulation.articulated import (
+    Folded,
+    HingeErrors,
     input_signals_with_hinges,
     kept_signals_with_hinges,
     run_with_hinges,
@@ -59,9 +61,10 @@ class Trajectory:
     columns: dict[str, np.ndarray]
     grip: Grip | None = None  # None: the scene has no data of the ground
     refused: Refused | None = None  # what ended it before its time
-    errors: Errors | None = None  # at its end; None: the estimate was not asked for
+    errors: Errors | HingeErrors | None = None  # at its end; None: the estimate was not asked for
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
     limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
+    folded: tuple[Folded, ...] = ()  # with hinges: trailers that turned by more than a right angle
     least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
 
     def __repr__(self) -> str:
@@ -176,14 +179,13 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
 
     Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. `progress`: says on
     stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps;
-    `estimated`: estimates the run's error (docs/accuracy.md), with friction at three times the cost.
+    `estimated`: estimates the run's error (docs/accuracy.md), with friction at three times the cost, with hinges at
+    four times.
     Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
     is refused or the outputs at the end leave the range of numbers, has the motion up to there.
     """
     if check_scene(scene).has_hinges:
-        if flag("estimated", estimated):
-            raise BadInput(f"{scene.path}: the error of vehicles with hinges is not estimated yet; leave estimated out")
-        return simulate_with_hinges(scene, signals, flag("progress", progress))
+        return simulate_with_hinges(scene, signals, flag("progress", progress), flag("estimated", estimated))
     kept = kept_signals(scene, signals)
     progress, watched, estimated = flag("progress", progress), flag("watched", watched), flag("estimated", estimated)
     core, steps, every = scene.core(), scene.steps(), interval_of(scene)
@@ -224,18 +226,22 @@ def interval_of(scene: Scene) -> int:
     return every
 
 
-def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool) -> Trajectory:
-    """The run of a scene whose vehicle has bodies on hinges. Its error is not estimated yet."""
+def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, estimated: bool) -> Trajectory:
+    """The run of a scene whose vehicle has bodies on hinges."""
     kept, steps, every = kept_signals_with_hinges(scene, signals), scene.steps(), interval_of(scene)
     with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
-        plant, rows, commands, seconds, refused = run_with_hinges(scene, kept, every, moved)
+        found = run_with_hinges(scene, kept, every, moved, estimated)
+    rows, plant = found.rows, found.plant
     ticks = np.append(np.arange(0, steps, every), steps)[: len(rows)]
-    if refused and len(rows):
+    if found.refused and len(rows):
         ticks[-1] = plant.steps
-    run = Trajectory(scene, plant.method, plant.steps, seconds, ticks * scene.run.step_s, rows.columns(),
-                     refused=refused, limited=tuple(commands.limited.values()), least_margin=rows.least_margin)
-    if refused:
-        raise RunRefused(refused, run) from None
+    run = Trajectory(scene, plant.method, plant.steps, found.seconds, ticks * scene.run.step_s, rows.columns(),
+                     refused=found.refused, limited=tuple(found.commands.limited.values()),
+                     folded=rows.folded, least_margin=rows.least_margin)
+    if found.parts and len(rows):
+        run.errors, run.error_columns = found.parts.read(), found.parts.columns()
+    if found.refused:
+        raise RunRefused(found.refused, run) from None
     return run
 
 

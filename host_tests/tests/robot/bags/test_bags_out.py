@@ -212,7 +212,7 @@ def test_a_steered_run_comes_back_by_its_steering_angles(tmp_path, capsys):
     bag, columns = tmp_path / "run.mcap", tmp_path / "map.toml"
     columns.write_text(STEERED_MAP)
     assert run(["simulate", "tricycle_agv", "--bag", str(bag)]) == 0
-    assert "has no /odom and no /tf, as odometry of vehicles with hinges" in capsys.readouterr().err
+    capsys.readouterr()
     assert run(["replay", str(bag), "tricycle_agv", "--map", str(columns), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["runs"][0]
     assert found["path_error"] < 1e-4 and found["heading_error_rad"] < 2e-4

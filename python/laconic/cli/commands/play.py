@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @click.command("play")
-@click.argument("scene_name", type=SceneName(), metavar="SCENE")
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="SCENE")
 @click.option("--interface", help="python-can's name of the controller's bus: socketcan, slcan, pcan, faulty …")
 @click.option("--channel", help="Channel of the interface: can0, /dev/ttyACM0, socket://127.0.0.1:PORT …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")

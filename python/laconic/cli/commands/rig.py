@@ -32,7 +32,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 
 
 @click.command("rig")
-@click.argument("scene_name", type=SceneName(), metavar="[SCENE]", required=False)
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="[SCENE]", required=False)
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
 @click.option("--channel", help="Channel of the interface: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
@@ -91,6 +91,7 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
 
 def drive(scene: Scene, options: Options) -> int:
     """A run or a replay, and its results in every form that the options choose."""
+    from laconic.can.rig.bagged import check_rigid
     from laconic.can.rig.errors import Interrupted
     from laconic.can.rig.options import read_id_base
     from laconic.can.rig.replay import judge_log
@@ -98,6 +99,7 @@ def drive(scene: Scene, options: Options) -> int:
     from laconic.can.rig.run import run
     from laconic.can.rig.scaled import read_tolerances
 
+    check_rigid(scene, options.recorded)
     began = time.perf_counter()
     if options.replay is not None:
         goes_with("--replay", "--lockstep", "--channel", "--id-base", "--method", "--real", "--tolerance", "--junit",

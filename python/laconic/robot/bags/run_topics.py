@@ -14,13 +14,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from laconic.base.outputs import claims, make_folder
+from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput, reason_of
 from laconic.robot.bags.messages import store
-from laconic.robot.replay.rolling import Rolling, path_of, rolling_of
+from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
 from laconic.ros2 import FRAMES
 from laconic.scene import Scene
 from laconic.scene.base import usual_joints
-from laconic.simulation.loads import centre_of
 
 COMMITTED_AT_ONCE = 2000       # messages
 BYTES_OF_CHUNK = 1 << 18
@@ -225,6 +225,7 @@ def _span(indent: str, first_ns: int, length_ns: int) -> list[str]:
 ODOM, BASE, MAP, IMU = (FRAMES[name] for name in ("odom", "base", "map", "imu"))
 ODOMETRY, TRANSFORMS = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 JOINTS, IMU_TYPE, NUMBERS = "sensor_msgs/msg/JointState", "sensor_msgs/msg/Imu", "std_msgs/msg/Float64MultiArray"
+HINGE_ANGLE, HINGE_RATE = "hinge_angle_rad", "hinge_rate_rad_per_s"
 UNKNOWN_VARIANCE = -1.0        # in the first place of a covariance: that quantity is not measured
 
 
@@ -233,14 +234,12 @@ def needed_signals(scene: Scene) -> tuple[str, ...]:
     from laconic.simulation.run import input_signals, sensor_signals
 
     names = ["x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "velocity_body_m_per_s[1]", "velocity_body_m_per_s[2]"]
+    names += [f"{name}[{hinge.name}]" for hinge in scene.hinges for name in (HINGE_ANGLE, HINGE_RATE)]
     for wheel in range(1, scene.wheel_count + 1):
         names += [f"wheel_angle_rad[{wheel}]", f"wheel_speed_rad_per_s[{wheel}]"]
-    for hinge in scene.hinges:
-        names += [f"hinge_angle_rad[{hinge.name}]", f"hinge_rate_rad_per_s[{hinge.name}]"]
     voltages = [each for each in input_signals(scene) if each.startswith("voltage_V")]
-    if scene.has_hinges:
-        return (*names, *voltages)
-    return (*names, *voltages, *(each for each in sensor_signals(scene) if each.startswith("imu_")))
+    shown = () if scene.has_hinges else sensor_signals(scene)
+    return (*names, *voltages, *(each for each in shown if each.startswith("imu_")))
 
 
 class RunTopics:
@@ -249,13 +248,13 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        self.wheels = list(scene.base.joint_names) if scene.base and scene.base.joint_names else usual_joints(
-            scene.wheel_count)
-        self.hinges = [f"{hinge.name}_joint" for hinge in scene.hinges]
-        centre = centre_of(scene.vehicle)
-        self._centre = np.array([centre.real, centre.imag])
+        names = scene.base.joint_names if scene.base else ()
+        self.joints = [*(names or usual_joints(scene.wheel_count)), *(f"{hinge.name}_joint" for hinge in scene.hinges)]
+        core, carriage = scene.core(), carriage_of(scene)
+        self._centre = centre_of_mass(core, core.vehicle(carriage))
+        self._rolling = _rolling(scene, carriage)
+        self._on_carriage = [at for at, wheel in enumerate(scene.vehicle["wheel"]) if is_of_carriage(wheel)]
         self._has_begun = False
-        self._rolling = _rolling(scene)
         self._angles: np.ndarray | None = None
         self._odom: np.ndarray | None = None
         self._before_s = 0.0
@@ -265,9 +264,7 @@ class RunTopics:
         """What the recording lacks."""
         if self._rolling is not None:
             return ()
-        why = "odometry of vehicles with hinges is not summed up" if self.scene.has_hinges else \
-            "the wheels do not determine the motion"
-        return (f"--bag {self.bag.path}: has no /odom and no /tf, as {why}",)
+        return (f"--bag {self.bag.path}: has no /odom and no /tf, as the wheels do not determine the motion",)
 
     def take(self, time_s: float, signals: Mapping[str, float]) -> None:
         """One instant; what of the signals is not there leaves out its topic."""
@@ -280,9 +277,13 @@ class RunTopics:
         angles = self._of_wheels(signals, "wheel_angle_rad")
         speeds = self._of_wheels(signals, "wheel_speed_rad_per_s")
         if angles is not None or speeds is not None:
-            self._joint_states(stamp_ns, stamp, angles, speeds, signals)
+            nothing = np.zeros(0)
+            self.bag.write("/joint_states", JOINTS, stamp_ns, self.types[JOINTS](
+                self._header(stamp, ""), self.joints, nothing if angles is None else
+                np.append(angles, self._of_hinges(signals, HINGE_ANGLE)), nothing if speeds is None else
+                np.append(speeds, self._of_hinges(signals, HINGE_RATE)), nothing))
         if angles is not None and self._rolling is not None:
-            self._odometry(stamp_ns, stamp, time_s, angles, signals)
+            self._odometry(stamp_ns, stamp, time_s, angles[self._on_carriage], signals)
         rate = signals.get("imu_yaw_rate_rad_per_s", signals.get("yaw_rate_rad_per_s"))
         if rate is not None:
             self._imu(stamp_ns, stamp, rate, signals)
@@ -295,19 +296,6 @@ class RunTopics:
         values = [signals.get(f"{name}[{number}]") for number in range(1, self.scene.wheel_count + 1)]
         return np.array(values, float) if values and None not in values else None
 
-    def _joint_states(self, stamp_ns: int, stamp: Any, angles: np.ndarray | None, speeds: np.ndarray | None,
-                      signals: Mapping[str, float]) -> None:
-        """Wheels, then hinges where their angles are known; a list without a value is empty."""
-        nothing, names = np.zeros(0), self.wheels
-        turned = [signals.get(f"hinge_angle_rad[{hinge.name}]") for hinge in self.scene.hinges]
-        if turned and None not in turned and angles is not None and speeds is not None:
-            rates = [signals.get(f"hinge_rate_rad_per_s[{hinge.name}]", 0.0) for hinge in self.scene.hinges]
-            names = [*self.wheels, *self.hinges]
-            angles, speeds = np.append(angles, np.array(turned, float)), np.append(speeds, np.array(rates, float))
-        self.bag.write("/joint_states", JOINTS, stamp_ns, self.types[JOINTS](
-            self._header(stamp, ""), names, nothing if angles is None else angles,
-            nothing if speeds is None else speeds, nothing))
-
     def _fixed_frames(self, stamp_ns: int, stamp: Any) -> None:
         """Where the IMU is on the robot."""
         self._has_begun = True
@@ -316,6 +304,9 @@ class RunTopics:
         self.bag.write("/tf_static", TRANSFORMS, stamp_ns, self.types[TRANSFORMS]([
             self.types["geometry_msgs/msg/TransformStamped"](self._header(stamp, BASE), IMU, self.types[
                 "geometry_msgs/msg/Transform"](place, self._quaternion(table.get("heading_rad", 0.0))))]))
+
+    def _of_hinges(self, signals: Mapping[str, float], name: str) -> list[float]:
+        return [signals.get(f"{name}[{hinge.name}]", math.nan) for hinge in self.scene.hinges]
 
     def _header(self, stamp: Any, frame: str) -> Any:
         return self.types["std_msgs/msg/Header"](stamp, frame)
@@ -378,11 +369,23 @@ class RunTopics:
             vector(float(ahead or 0.0), float(left or 0.0), 0.0), unknown if ahead is None else known))
 
 
-def _rolling(scene: Scene) -> Rolling | None:
-    """None where the wheels do not determine the motion: then there is no odometry."""
-    if not scene.vehicle["wheel"] or scene.has_hinges:
+def carriage_of(scene: Scene) -> dict[str, Any]:
+    """The vehicle, of one with hinges body 0 alone with its own wheels."""
+    wheels = [{key: value for key, value in wheel.items() if key != "body"} for wheel in scene.vehicle["wheel"]
+              if is_of_carriage(wheel)]
+    return {key: value for key, value in scene.vehicle.items() if key != "body"} | {"wheel": wheels}
+
+
+def is_of_carriage(wheel: Mapping[str, Any]) -> bool:
+    """Whether a wheel of a scene is on body 0."""
+    return bool(wheel.get("body", CARRIAGE) == CARRIAGE)
+
+
+def _rolling(scene: Scene, carriage: Mapping[str, Any]) -> Rolling | None:
+    """None where the wheels of the carriage do not determine the motion: then there is no odometry."""
+    if not carriage["wheel"]:
         return None
     try:
-        return rolling_of(scene.core(), scene.vehicle, scene.path)
+        return rolling_of(scene.core(), carriage, scene.path)
     except BadInput:
         return None

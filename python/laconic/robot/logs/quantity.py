@@ -59,8 +59,8 @@ class Quantity:
     keyword: str = ""                  # of the lines that hold it; empty: of all
     time: str = ""                     # column of its own instants; empty: those of the log
     topic: str = ""                    # of messages whose type says which fields are meant
-    hinges: tuple[str, ...] = ()       # of the scene, whose angle each column is; empty: in the scene's order
     frames: tuple[str, ...] = ()       # parent and child: the pose of the one in the other, of /tf
+    hinges: tuple[str, ...] = ()       # of the scene, whose angle each column is; empty: in the scene's order
 
     def channel_of(self, index: int, usual: str) -> str:
         """The channel of a column; empty: the only one of the log."""
