@@ -10,11 +10,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from laconic.base.progress import Advance, progress_bar
+from laconic.core.articulated import ArticulatedPlant
 from laconic.core.estimate import ErrorRows, Errors, Estimate
 from laconic.core.given import flag, shown
 from laconic.core.grip import Grip
 from laconic.core.plant import Plant
 from laconic.core.recording import Recorder, needs_sensors
+from laconic.core.slipping import SlippingPlant
 from laconic.errors import BadInput, Refused, nearest_of
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import slips
@@ -34,12 +36,14 @@ from laconic.scene.signals import (
 )
 from laconic.scene.table import Table
 from laconic.simulation.articulated import (
+    Rows,
     input_signals_with_hinges,
     kept_signals_with_hinges,
     run_with_hinges,
     usual_signals_with_hinges,
 )
-from laconic.simulation.steering import Limited
+from laconic.simulation.slipping import SlippingRows, run_slipping
+from laconic.simulation.steering import Commands, Limited
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
@@ -63,6 +67,7 @@ class Trajectory:
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
     limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
     least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
+    slip_loss_J: float | None = None  # with hinges where wheels may slip: what slip and scrub took
 
     def __repr__(self) -> str:
         """In one line: its arrays have thousands of numbers."""
@@ -226,17 +231,33 @@ def interval_of(scene: Scene) -> int:
 
 def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool) -> Trajectory:
     """The run of a scene whose vehicle has bodies on hinges. Its error is not estimated yet."""
-    kept, steps, every = kept_signals_with_hinges(scene, signals), scene.steps(), interval_of(scene)
-    with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
-        plant, rows, commands, seconds, refused = run_with_hinges(scene, kept, every, moved)
+    kept, every = kept_signals_with_hinges(scene, signals), interval_of(scene)
+    with progress_bar(scene.name, scene.steps(), forecasts=True) if progress else nullcontext(_silently) as moved:
+        if scene.slips_on_hinges:
+            return as_trajectory(scene, every, *run_slipping(scene, kept, every, moved))
+        return as_trajectory(scene, every, *run_with_hinges(scene, kept, every, moved))
+
+
+def as_trajectory(scene: Scene, every: int, plant: ArticulatedPlant | SlippingPlant, rows: Rows | SlippingRows,
+                  commands: Commands, seconds: float, refused: Refused | None) -> Trajectory:
+    """The run of a vehicle with hinges; RunRefused where a step was refused on the way."""
+    steps = scene.steps()
     ticks = np.append(np.arange(0, steps, every), steps)[: len(rows)]
     if refused and len(rows):
         ticks[-1] = plant.steps
     run = Trajectory(scene, plant.method, plant.steps, seconds, ticks * scene.run.step_s, rows.columns(),
-                     refused=refused, limited=tuple(commands.limited.values()), least_margin=rows.least_margin)
+                     refused=refused, limited=tuple(commands.limited.values()),
+                     least_margin=getattr(rows, "least_margin", None),
+                     slip_loss_J=slip_loss_of(plant) if isinstance(plant, SlippingPlant) else None)
     if refused:
         raise RunRefused(refused, run) from None
     return run
+
+
+def slip_loss_of(plant: SlippingPlant) -> float:
+    """What slip and scrub took since the start."""
+    found = plant.outputs()
+    return found.slip_loss_J + found.scrub_loss_J
 
 
 def _silently(amount: float = 1, what: str | None = None) -> None:
