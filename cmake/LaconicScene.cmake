@@ -28,7 +28,8 @@ set(scene_files "${scene_folder}/laconic_scene.h" "${scene_folder}/laconic_scene
     "${scene_folder}/laconic_scene_model.c")
 cmake_path(GET LACONIC_VENV PARENT_PATH host_build)
 file(GLOB_RECURSE trim_program CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/python/laconic/core/*.py"
-    "${PROJECT_SOURCE_DIR}/python/laconic/scene/*.py" "${PROJECT_SOURCE_DIR}/python/laconic/tools/trim/*.py")
+    "${PROJECT_SOURCE_DIR}/python/laconic/scene/*.py" "${PROJECT_SOURCE_DIR}/python/laconic/simulation/*.py"
+    "${PROJECT_SOURCE_DIR}/python/laconic/tools/trim/*.py")
 add_custom_command(
     OUTPUT ${scene_files}
     COMMAND "${CMAKE_COMMAND}" -E env "LACONIC_BUILD_DIR=${host_build}"
@@ -42,12 +43,13 @@ if(venv_is_ours AND NOT CMAKE_CROSSCOMPILING)
     add_dependencies(laconic_scene_files laconic_shared_${scene_real} laconic_cdef_${scene_real})
 endif()
 
-file(GLOB_RECURSE scene_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/core_c/src/*.c")
+file(GLOB_RECURSE scene_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/core_c/src/*.c"
+    "${PROJECT_SOURCE_DIR}/core_c/optional/articulated/*.c")
 include("${PROJECT_SOURCE_DIR}/core_c/cmake/LaconicFolders.cmake")
 add_library(laconic_scene STATIC ${scene_sources} "${scene_folder}/laconic_scene_model.c")
 laconic_strict(laconic_scene)
 target_include_directories(laconic_scene PUBLIC "${PROJECT_SOURCE_DIR}/core_c/include" "${scene_folder}"
-    PRIVATE ${core_folders})
+    PRIVATE ${core_folders} "${PROJECT_SOURCE_DIR}/core_c/optional/articulated")
 target_compile_definitions(laconic_scene PUBLIC LACONIC_SCENE_HEADER="laconic_scene.h")
 if(scene_real STREQUAL "single")
     target_compile_definitions(laconic_scene PUBLIC LACONIC_SINGLE)

@@ -19,7 +19,7 @@ import cantools
 DBC = Path(__file__).with_name("laconic.dbc")
 BASE = 0x680          # of the identifiers in the DBC
 REPEAT_S = 0.1        # without an answer for this long, the same frame is sent again
-MOTION = ("VOLTAGE", "VOLTAGE_FD", "RAW_INPUT", "RAW_INPUT_FD", "SYNC")
+MOTION = ("VOLTAGE", "VOLTAGE_FD", "RAW_INPUT", "RAW_INPUT_FD", "SYNC", "STEERING")
 WHEEL_FIXED = 2
 BURGER = {"MASS": 0.883, "YAW_INERTIA": 2.39e-3, "WHEEL_RADIUS": 0.033, "WHEEL_INERTIA": 2.07e-5, "MOTOR_GAIN": 0.125,
           "MOTOR_DAMPING": 0.235, "STEP": 0.01, "WHEEL_COUNT": 2, "WHEEL_KIND": [WHEEL_FIXED, WHEEL_FIXED],

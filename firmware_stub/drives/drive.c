@@ -1,6 +1,8 @@
 /* One motor drive: its loops and limits, its encoder, its faults. */
 #include "laconic_drives/drive.h"
 
+#include "laconic_wire.h" /* LACONIC_NODE_WITH_HINGES */
+
 #include <string.h>
 
 #define R(number) ((laconic_real)(number))
@@ -118,6 +120,21 @@ laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s) 
     drive->torque_Nm = torque_Nm;
     return torque_Nm;
 }
+
+#if LACONIC_NODE_WITH_HINGES
+laconic_real laconic_drive_follow(laconic_wheel_drive *drive) {
+    const laconic_real limit = drive->settings.speed_limit_rad_per_s;
+    const bool by_place = drive->target.mode == LACONIC_DRIVE_POSITION;
+    drive->limits = 0;
+    if (drive->faults != 0 || (drive->target.mode != LACONIC_DRIVE_SPEED && !by_place)) return 0;
+    laconic_real set_rad_per_s = by_place ? position_loop(drive) : drive->target.speed_rad_per_s;
+    if (limit > 0) set_rad_per_s = within(drive, set_rad_per_s, -limit, limit, LACONIC_DRIVE_AT_SPEED);
+    const laconic_real rate_rad_per_s = set_rad_per_s / drive->settings.gear_ratio;
+    if (rate_rad_per_s - rate_rad_per_s == 0) return rate_rad_per_s;
+    laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_TARGET); /* not finite */
+    return 0;
+}
+#endif
 
 /* -------------------------------------------------------------------------------- encoder -- */
 

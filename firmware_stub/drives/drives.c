@@ -36,25 +36,35 @@ static void measure(laconic_drives *drives, const laconic_plant *plant, const la
 
 /* ---------------------------------------------------------------------------------- start -- */
 
-void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan,
-                          const laconic_drive_protocol *protocol, void *axes, const laconic_plant *plant,
-                          uint32_t now_us) {
-    laconic_odometer here;
+/* All drives off, without what they measure. */
+static void begin(laconic_drives *drives, const laconic_drive_plan *plan, const laconic_drive_protocol *protocol,
+                  void *axes, laconic_real step_s, uint32_t now_us) {
     memset(drives, 0, sizeof *drives);
     drives->protocol = protocol;
     drives->axes = axes;
-    drives->step_s = plant->integrator.step_s;
+    drives->step_s = step_s;
     drives->watchdog_s = plan->watchdog_s;
     drives->now_us = now_us;
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+    for (int32_t i = 0; i < LACONIC_DRIVE_AXES; i++) {
         if (plan->drive[i].node_id < 0) continue;
         drives->wheel[drives->count] = (uint8_t)i;
         laconic_drive_start(&drives->drive[drives->count++], &plan->drive[i]);
     }
+}
+
+static void begin_protocol(laconic_drives *drives, uint32_t now_us) {
+    memset(drives->axes, 0, (size_t)drives->count * drives->protocol->axis_bytes);
+    drives->protocol->start(drives, now_us);
+}
+
+void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan,
+                          const laconic_drive_protocol *protocol, void *axes, const laconic_plant *plant,
+                          uint32_t now_us) {
+    laconic_odometer here;
+    begin(drives, plan, protocol, axes, plant->integrator.step_s, now_us);
     laconic_odometer_of(&here, plant);
     measure(drives, plant, &here);
-    memset(axes, 0, (size_t)drives->count * protocol->axis_bytes);
-    protocol->start(drives, now_us);
+    begin_protocol(drives, now_us);
 }
 
 /* ------------------------------------------------------------------------ brakes by order -- */
@@ -109,3 +119,77 @@ laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant,
     measure(drives, plant, &before);
     return LACONIC_OK;
 }
+
+/* -------------------------------------------------------------------------------- hinges -- */
+
+#if LACONIC_NODE_WITH_HINGES
+
+static laconic_real difference(const laconic_sum *a, const laconic_sum *b) {
+    return (a->value - b->value) + (a->rest - b->rest);
+}
+
+#ifdef LACONIC_SINGLE
+typedef int32_t signed_fraction;
+#define RAD_PER_UNIT ((laconic_real)(3.14159265358979323846 / 2147483648.0)) /* π / 2³¹ */
+#else
+typedef int64_t signed_fraction;
+#define RAD_PER_UNIT ((laconic_real)(3.14159265358979323846 / 9223372036854775808.0)) /* π / 2⁶³ */
+#endif
+
+/* How far a hinge has turned between two states, less than half a turn, with the resolution of a heading. */
+static laconic_real turned_rad(const laconic_heading *before, const laconic_heading *after) {
+    const signed_fraction whole = (signed_fraction)(after->fraction - before->fraction);
+    return ((laconic_real)whole + 2 * (after->rest - before->rest)) * RAD_PER_UNIT;
+}
+
+/* How far a wheel has turned between two states. */
+static laconic_real rolled_rad(const laconic_articulated_wheel *wheel, const laconic_articulated_state *before,
+                               const laconic_articulated_state *after) {
+    const laconic_sum *from = before->travel[wheel->body], *to = after->travel[wheel->body];
+    return wheel->roll.x * difference(&to[0], &from[0]) + wheel->roll.y * difference(&to[1], &from[1]) +
+           wheel->roll.z * difference(&to[2], &from[2]);
+}
+
+void laconic_drives_measure_with_hinges(laconic_drives *drives, const laconic_articulated_model *model,
+                                        const laconic_articulated_state *before,
+                                        const laconic_articulated_state *after) {
+    laconic_articulated_motion motion;
+    laconic_articulated_motion_of(&motion, model, after);
+    for (int32_t k = 0; k < drives->count; k++) {
+        const int32_t i = drives->wheel[k], b = i - model->wheel_count;
+        if (b < 0) {
+            laconic_drive_measure(&drives->drive[k], rolled_rad(&model->wheel[i], before, after),
+                                  motion.wheel_speed_rad_per_s[i]);
+        } else {
+            laconic_drive_measure(&drives->drive[k], turned_rad(&before->hinge[b], &after->hinge[b]),
+                                  motion.hinge_rate_rad_per_s[b]);
+        }
+    }
+}
+
+void laconic_drives_start_with_hinges(laconic_drives *drives, const laconic_drive_plan *plan,
+                                      const laconic_drive_protocol *protocol, void *axes,
+                                      const laconic_articulated_model *model, const laconic_articulated_state *state,
+                                      laconic_real step_s, uint32_t now_us) {
+    begin(drives, plan, protocol, axes, step_s, now_us);
+    laconic_drives_measure_with_hinges(drives, model, state, state);
+    begin_protocol(drives, now_us);
+}
+
+void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articulated_model *model, laconic_input *held,
+                                    laconic_articulated_input input[2], uint32_t now_us) {
+    drives->protocol->on_step(drives, advance(drives, now_us));
+    for (int32_t k = 0; k < drives->count; k++) {
+        const int32_t i = drives->wheel[k], b = i - model->wheel_count;
+        laconic_wheel_drive *drive = &drives->drive[k];
+        if (b < 0) {
+            held->axle_torque_Nm[i] = laconic_drive_act(drive, drives->step_s);
+        } else if (model->link[b].motion == LACONIC_MOTION_PRESCRIBED) {
+            input[1].hinge_rate_rad_per_s[b] = laconic_drive_follow(drive);
+        } else {
+            const laconic_real torque_Nm = laconic_drive_act(drive, drives->step_s);
+            for (int each = 0; each < 2; each++) input[each].hinge_torque_Nm[b] = torque_Nm;
+        }
+    }
+}
+#endif

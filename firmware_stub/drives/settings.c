@@ -5,7 +5,7 @@
 
 void laconic_drive_plan_begin(laconic_drive_plan *plan) {
     memset(plan, 0, sizeof *plan);
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) plan->drive[i].node_id = -1;
+    for (int32_t i = 0; i < LACONIC_DRIVE_AXES; i++) plan->drive[i].node_id = -1;
 }
 
 typedef struct checked_number {
@@ -67,7 +67,7 @@ laconic_status laconic_drive_plan_check(const laconic_drive_plan *plan, const la
     if (status == LACONIC_OK && plan->watchdog_s > 1000) status = LACONIC_ABOVE_LIMIT;
     if (status != LACONIC_OK)
         return refuse(why, status, LACONIC_DRIVES_FIELD_DRIVE_WATCHDOG, 0, plan->watchdog_s, 1000);
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+    for (int32_t i = 0; i < LACONIC_DRIVE_AXES; i++) {
         if (plan->drive[i].node_id < 0) continue;
         status = check_id(plan, protocol, wheel_count, i, why);
         if (status == LACONIC_OK) status = check_drive(&plan->drive[i], i + 1, why);

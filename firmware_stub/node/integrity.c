@@ -26,6 +26,12 @@ static const memory_part model_parts[] = {
 #if LACONIC_NODE_WITH_SENSORS
     PART(sensors.settings),
 #endif
+#if LACONIC_NODE_WITH_HINGES
+    PART(hinges.model),
+    PART(hinges.integrator),
+    PART(hinges.start),
+    PART(hinges.first),
+#endif
 };
 
 /* From one member to the end of another behind it. */
@@ -37,6 +43,9 @@ static const memory_part model_parts[] = {
 static const memory_part shape_parts[] = {
     SPAN(plant.integrator.method, plant.integrator.step_s),
     SPAN(plant.model.wheel_count, plant.model.dof),
+#if LACONIC_NODE_WITH_HINGES
+    SPAN(hinges.model.body_count, hinges.model.coordinated),
+#endif
 };
 
 /* What every call may write, but nobody between two calls; with the pointer and the count of drives. */
@@ -50,6 +59,11 @@ static const memory_part motion_parts[] = {
 #if LACONIC_NODE_WITH_DRIVES
     SPAN(drives.protocol, drives.count),
     PART(drives.wheel),
+#endif
+#if LACONIC_NODE_WITH_HINGES
+    SPAN(hinges.here, hinges.send),
+    SPAN(hinges.state, hinges.twist),
+    PART(hinges.input),
 #endif
 };
 
@@ -173,9 +187,31 @@ static bool is_sum(const laconic_sum *sum) {
     return is_finite(sum->value) && sum->rest <= unit && sum->rest >= -unit;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+static bool is_possible_with_hinges(const laconic_node *node, const laconic_integrity_limits *limits) {
+    const laconic_node_hinges *hinges = &node->hinges;
+    laconic_articulated_motion motion;
+    laconic_node_motion_of(&motion, node);
+    bool good = is_within(motion.yaw_rate_rad_per_s, limits->yaw_rate_rad_per_s) && is_sum(&hinges->state.x_m) &&
+                is_sum(&hinges->state.y_m) && is_within(motion.x_m, limits->distance_m) &&
+                is_within(motion.y_m, limits->distance_m) && is_within(hinges->state.heading.rest, 1);
+    for (int k = 0; k < 2; k++) good = good && is_within(motion.velocity_m_per_s[k], limits->speed_m_per_s);
+    for (int32_t i = 0; i < hinges->model.dof && i < LACONIC_MAX_VELOCITIES; i++)
+        good = good && is_sum(&hinges->state.eta[i]);
+    for (int32_t b = 0; b < hinges->model.body_count && b < LACONIC_MAX_BODIES; b++)
+        good = good && is_within(hinges->state.hinge[b].rest, 1) && is_finite(motion.hinge_rate_rad_per_s[b]);
+    for (int32_t i = 0; i < node->plant.model.wheel_count && i < LACONIC_MAX_WHEELS; i++)
+        good = good && is_within(node->input[0].voltage_V[i], limits->voltage_V);
+    return good && node->state <= LACONIC_WIRE_STATE_DRIVES;
+}
+#endif
+
 static bool is_possible(const laconic_node *node, const laconic_integrity_limits *limits) {
     const laconic_state *state = &node->plant.state;
     laconic_real velocity_m_per_s[2];
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) return is_possible_with_hinges(node, limits);
+#endif
     const laconic_real yaw_rate = laconic_body_velocity(&node->plant.model, state, velocity_m_per_s);
     bool good = is_within(yaw_rate, limits->yaw_rate_rad_per_s) && is_sum(&state->x_m) && is_sum(&state->y_m) &&
                 is_within(state->x_m.value, limits->distance_m) && is_within(state->y_m.value, limits->distance_m) &&

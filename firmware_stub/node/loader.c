@@ -29,11 +29,20 @@ typedef struct location {
 #define IN_START(member) 0, 0, AT(start.member)
 #define IN_RUN(member) 0, 0, AT(member)
 #define IN_DRIVES(member) 0, 0, AT(drives.member)
-#define IN_DRIVES_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_drive_settings), AT(drives.drive[0].member)
+#define IN_DRIVES_WHEEL(member) LACONIC_DRIVE_AXES, sizeof(laconic_drive_settings), AT(drives.drive[0].member)
 #define IN_IMU(member) 0, 0, AT(sensors.imu.member)
 #define IN_IMU_ARRAY(member) 2, sizeof(laconic_real), AT(sensors.imu.member)
 #define IN_ENCODER(member) 0, 0, AT(sensors.encoder_##member)
 #define IN_WHEEL_ENCODER(member) LACONIC_MAX_WHEELS, sizeof(laconic_encoder_settings), AT(sensors.encoder[0].member)
+#if LACONIC_NODE_WITH_HINGES
+#define IN_BODY(member) LACONIC_MAX_BODIES, sizeof(laconic_body), AT(bodies.body[0].member)
+#define IN_WHEEL_BODY(member) LACONIC_MAX_WHEELS, sizeof(int32_t), AT(bodies.wheel_##member[0])
+#define IN_BODY_COUNT(member) 0, 0, AT(bodies.member##_count)
+#define ITEMS_OF(member) sizeof(((laconic_node_bodies *)NULL)->member) / sizeof(laconic_real)
+#define IN_HINGE_COMMAND(member) ITEMS_OF(member), sizeof(laconic_real), AT(bodies.member)
+#define IN_HINGE_START(member) \
+    (ITEMS_OF(start.member) > 1 ? ITEMS_OF(start.member) : 0), sizeof(laconic_real), AT(bodies.start.member)
+#endif
 #define LOCATION(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF(number)({number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)}, )
 
@@ -109,6 +118,12 @@ static void store_real(laconic_loader *loader, void *to, const struct laconic_db
 static void store_integer(laconic_loader *loader, void *to, uint8_t kind, const struct laconic_dbc_parameter_t *frame) {
     const int32_t number = (int32_t)frame->value;
     const bool flag = (frame->value != 0) != (kind == LACONIC_KIND_ABSENCE);
+#if LACONIC_NODE_WITH_HINGES
+    if (frame->field == LACONIC_FIELD_OF_BODY_HINGE && !frame->upper_half && frame->value <= 127U) {
+        *(laconic_hinge_kind *)to = (laconic_hinge_kind)frame->value; /* an enumeration, which may be short */
+        return;
+    }
+#endif
     const uint32_t largest = kind == LACONIC_KIND_WHEEL_KIND ? 127U : kind == LACONIC_KIND_INTEGER ? UINT32_MAX : 1U;
     if (frame->upper_half || frame->value > largest) {
         refuse(loader, LACONIC_WIRE_STATUS_OUT_OF_RANGE, frame->field, frame->item);
@@ -175,12 +190,26 @@ static bool is_needed(const laconic_loader *loader, laconic_field_need need, int
     }
 }
 
+/* False for bodies beyond the last. */
+static bool is_of_one(const laconic_loader *loader, uint8_t field, uint8_t item) {
+#if LACONIC_NODE_WITH_HINGES
+    const bool of_body = field >= LACONIC_FIELD_OF_BODY_PARENT && field <= LACONIC_FIELD_OF_HINGE_GAIN;
+    return !of_body || item <= loader->parameters.bodies.body_count;
+#else
+    (void)loader;
+    (void)field;
+    (void)item;
+    return true;
+#endif
+}
+
 static bool something_is_missing(const laconic_loader *loader, uint8_t *field, uint8_t *item) {
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
         *field = locations[k].field;
         for (*item = locations[k].items > 0; *item <= locations[k].items; ++*item) {
             const bool given = (loader->given[k] >> *item & 1U) != 0;
-            if (!given && is_needed(loader, need_of(&locations[k]), *item)) return true;
+            if (!given && is_needed(loader, need_of(&locations[k]), *item) && is_of_one(loader, *field, *item))
+                return true;
         }
     }
     *field = 0;

@@ -43,6 +43,9 @@ static bool dispatch_motion(laconic_node *node, uint8_t offset, const uint8_t *d
     case LACONIC_WIRE_SYNC: sync(node, data); return true;
     case LACONIC_WIRE_VOLTAGE: return laconic_node_voltage(node, data, now_us);
     case LACONIC_WIRE_RAW_INPUT: return laconic_node_raw(node, data + 2, data[1] >> 4, 15, 6);
+#if LACONIC_NODE_WITH_HINGES
+    case LACONIC_WIRE_STEERING: return laconic_node_steering(node, data);
+#endif
     default: break;
     }
     if (!LACONIC_NODE_CAN_FD) return false;
@@ -80,7 +83,7 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
 #endif
         return;
     }
-    if (offset >= LACONIC_WIRE_RIG_OFFSETS || !is_well_formed(frame, &laconic_wire[offset])) {
+    if (!LACONIC_WIRE_FROM_RIG(offset) || !is_well_formed(frame, &laconic_wire[offset])) {
         count(&node->counters.malformed);
         return;
     }
@@ -90,6 +93,9 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
 
 /* A controller of drives has the bus for itself, unless a rig asks for frames. */
 static bool is_silent(const laconic_node *node) {
+#if LACONIC_NODE_WITH_HINGES
+    if (node->hinges.send != 0 || node->raw_output.send_hinges != 0) return false;
+#endif
     return plays_drives(node) && node->send == 0 && node->raw_output.send == 0 && !estimates(node);
 }
 
@@ -123,6 +129,14 @@ static bool has_more(laconic_node *node, uint8_t offset) {
     case LACONIC_WIRE_ENCODER:
         node->encoder_wheel = laconic_node_encoder_from(node, node->encoder_wheel + 1);
         return node->encoder_wheel < LACONIC_MAX_WHEELS;
+#endif
+#if LACONIC_NODE_WITH_HINGES
+    case LACONIC_WIRE_HINGE_ANGLE:
+        node->hinges.angle_group++;
+        return 3 * node->hinges.angle_group < node->hinges.model.body_count;
+    case LACONIC_WIRE_HINGE_RATE:
+        node->hinges.rate_group++;
+        return 3 * node->hinges.rate_group < node->hinges.model.body_count;
 #endif
 #if LACONIC_NODE_WITH_ESTIMATE
     case LACONIC_WIRE_ERROR_ESTIMATE: node->estimate_page++; return node->estimate_page < LACONIC_NODE_ESTIMATE_PAGES;

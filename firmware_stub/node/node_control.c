@@ -86,6 +86,11 @@ void laconic_node_make_idle(laconic_node *node) {
     node->send = 0;
     if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = 0;
     node->raw_output.send = 0;
+#if LACONIC_NODE_WITH_HINGES
+    node->hinges.send = 0;
+    node->raw_output.send_hinges = 0;
+    node->raw_input.take_hinges = 0;
+#endif
 #if LACONIC_NODE_WITH_ESTIMATE
     node->estimates = false;
 #endif
@@ -96,9 +101,14 @@ void laconic_node_make_idle(laconic_node *node) {
 static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
     laconic_refusal why = {0};
     if (!has_model(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
+#if LACONIC_NODE_WITH_HINGES
+    laconic_status status = has_hinges(node) ? laconic_node_restart_hinges(node, &why)
+                                             : laconic_plant_restart(&node->plant, &node->start, &why);
+#else
     laconic_status status = laconic_plant_restart(&node->plant, &node->start, &why);
+#endif
 #if LACONIC_NODE_WITH_SENSORS
-    laconic_node_start_sensors(node, &node->sensors.settings);
+    if (!has_hinges(node)) laconic_node_start_sensors(node, &node->sensors.settings);
 #endif
 #if LACONIC_NODE_WITH_ESTIMATE
     if (estimates(node) && status == LACONIC_OK) status = laconic_node_start_estimate(node, &why);
@@ -151,6 +161,9 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     const laconic_parameters *new = &node->loader.parameters;
     const laconic_method *method = node->config.method(new->method);
     laconic_refusal why = {0};
+#if LACONIC_NODE_WITH_HINGES
+    if (new->bodies.body_count != 0) return laconic_node_adopt_hinges(node, field, item);
+#endif
     if (method == NULL) {
         *field = LACONIC_FIELD_METHOD;
         return LACONIC_METHOD_UNKNOWN;
@@ -176,6 +189,9 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
 #endif
 #if LACONIC_NODE_WITH_DRIVES
     node->drive_plan = new->drives;
+#endif
+#if LACONIC_NODE_WITH_HINGES
+    laconic_node_drop_hinges(node);
 #endif
     node->start = new->start;
     node->model_is_wrong = false;
@@ -219,6 +235,9 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
     } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !speaks_fd(node)) ||
+#if LACONIC_NODE_WITH_HINGES
+               !laconic_node_may_select_hinges(node, data) ||
+#endif
                ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & (TAKES_LEFT_OUT | ESTIMATE_LEFT_OUT))) !=
                    0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
@@ -230,6 +249,9 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
         node->send = data[2];
         node->raw_fd = raw_fd != 0;
         node->raw_output.send = raw;
+#if LACONIC_NODE_WITH_HINGES
+        laconic_node_select_hinges(node, data);
+#endif
         if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = data[4] & LACONIC_RAW_TAKES;
         laconic_node_clear_inputs(node);
     }

@@ -42,11 +42,21 @@ uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *
     *field = 0;
     laconic_node_clear_inputs(node);
     laconic_node_begin_periods(node, rate_Hz, 1, now_us);
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) {
+        laconic_drives_start_with_hinges(&node->drives, &node->drive_plan, protocol, node->axes, &node->hinges.model,
+                                         &node->hinges.state, node->plant.integrator.step_s, now_us);
+        return 0;
+    }
+#endif
     laconic_drives_start(&node->drives, &node->drive_plan, protocol, node->axes, &node->plant, now_us);
     return 0;
 }
 
 static laconic_status step_unwatched(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) return laconic_node_step_hinges_by_drives(node, now_us, why);
+#endif
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node)) {
         laconic_sensor_moment before;
@@ -94,6 +104,7 @@ uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data) {
     for (int32_t k = 0; k < node->drives.count; k++) {
         if (node->drives.wheel[k] + 1 != data[3]) continue;
         if (upper_half || (orders & ~LACONIC_DRIVE_ORDERS) != 0) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+        if (has_hinges(node) && (orders & LACONIC_DRIVE_ORDER_HELD) != 0) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
         laconic_drive_order(&node->drives.drive[k], orders);
         return 0;
     }

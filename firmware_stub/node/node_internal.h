@@ -57,6 +57,18 @@ static inline bool may_start(const laconic_node *node) {
 
 #define SELECTS_ESTIMATE 0x20U /* of the byte with the take_ bits */
 
+#if LACONIC_NODE_WITH_HINGES
+/* Frames and numbers that vehicles with hinges do not have. */
+#define SENDS_NOT_OF_HINGES \
+    (LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_STATE_FD | LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER)
+#define RAW_NOT_OF_HINGES (LACONIC_RAW_NU | RAW_OF_SENSORS)
+#define PENDING_OF_HINGES \
+    (BIT_OF(LACONIC_WIRE_VELOCITY) | BIT_OF(LACONIC_WIRE_HINGE_ANGLE) | BIT_OF(LACONIC_WIRE_HINGE_RATE))
+#define PENDING_NOT_OF_HINGES \
+    (BIT_OF(LACONIC_WIRE_NU) | BIT_OF(LACONIC_WIRE_STATE_FD) | BIT_OF(LACONIC_WIRE_IMU) | \
+     BIT_OF(LACONIC_WIRE_ENCODER) | BIT_OF(LACONIC_WIRE_ERROR_ESTIMATE))
+#endif
+
 /* Inputs that this build's core does not read, so that a rig does not believe that they act. */
 #define TAKES_LEFT_OUT \
     ((LACONIC_WITH_VOLTAGE ? 0U : LACONIC_RAW_VOLTAGE) | (LACONIC_WITH_AXLE_TORQUE ? 0U : LACONIC_RAW_AXLE_TORQUE) | \
@@ -70,6 +82,15 @@ static inline bool speaks_fd(const laconic_node *node) { return LACONIC_NODE_CAN
 static inline bool estimates(const laconic_node *node) {
 #if LACONIC_NODE_WITH_ESTIMATE
     return node->estimates;
+#else
+    (void)node;
+    return false;
+#endif
+}
+
+static inline bool has_hinges(const laconic_node *node) {
+#if LACONIC_NODE_WITH_HINGES
+    return node->hinges.here;
 #else
     (void)node;
     return false;
@@ -107,6 +128,10 @@ bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment,
 /* `input_frames`: how many RAW_INPUT frames the rig has sent for it. */
 void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames, uint8_t request);
 
+#if LACONIC_NODE_WITH_HINGES
+bool laconic_node_steering(laconic_node *node, const uint8_t *data);
+#endif
+
 /* node_run.c */
 void laconic_node_run_lockstep(laconic_node *node);
 void laconic_node_run_free(laconic_node *node, uint32_t now_us);
@@ -132,6 +157,8 @@ uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data);
 
 /* node_sensors.c: IMU and encoders beside the plant. */
 #if LACONIC_NODE_WITH_SENSORS
+/* Whether any of these settings has been sent. */
+bool laconic_node_sensors_are_set(const laconic_sensor_settings *settings);
 /* Whether sensors must see the next steps. */
 bool laconic_node_watches(const laconic_node *node);
 /* As after power-up, beside the plant, with these settings. */
@@ -151,6 +178,35 @@ void laconic_node_end_watched(laconic_node *node, uint64_t steps);
 /* The same after one step with the input held, from the state before it: drives know their torques in it alone. */
 void laconic_node_watch_taken(laconic_node *node, const laconic_state *before);
 void laconic_node_publish_estimate(laconic_node *node);
+#endif
+
+/* node_hinges.c: vehicles with hinges. */
+#if LACONIC_NODE_WITH_HINGES
+/* The loaded vehicle with hinges, or nothing changes; a vehicle without. */
+uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *item);
+void laconic_node_drop_hinges(laconic_node *node);
+laconic_status laconic_node_restart_hinges(laconic_node *node, laconic_refusal *why);
+/* SELECT: whether the present vehicle has all that it chooses; the bits of hinges. */
+bool laconic_node_may_select_hinges(const laconic_node *node, const uint8_t *data);
+void laconic_node_select_hinges(laconic_node *node, const uint8_t *data);
+void laconic_node_publish_hinges(laconic_node *node);
+void laconic_node_clear_hinge_inputs(laconic_node *node);
+/* Three numbers of STEERING; false iff they are not for this vehicle. */
+bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t raw[3]);
+laconic_status laconic_node_step_hinges(laconic_node *node, uint64_t steps, laconic_refusal *why);
+laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refusal *why);
+#if LACONIC_NODE_WITH_DRIVES
+laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why);
+#endif
+void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node);
+/* Of every vehicle. */
+void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node);
+void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node);
+void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node);
+#else
+#define laconic_node_pose_of(pose, node) laconic_pose_of(pose, &(node)->plant.model, &(node)->plant.state)
+#define laconic_node_wheel_speeds(speed, node) laconic_plant_wheel_speeds(&(node)->plant, speed)
+#define laconic_node_wheel_angles(angle, node) laconic_plant_wheel_angles(&(node)->plant, angle)
 #endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */

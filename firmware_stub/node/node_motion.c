@@ -54,8 +54,22 @@ bool laconic_node_voltage_fd(laconic_node *node, const uint8_t *data, uint32_t n
     return true;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+bool laconic_node_steering(laconic_node *node, const uint8_t *data) {
+    const bool with_sync = (data[1] & 16U) != 0;
+    int16_t raw[3];
+    for (int k = 0; k < 3; k++) raw[k] = (int16_t)word16(data + 2 + 2 * k);
+    if (!may_set_voltages(node, with_sync) || !laconic_node_take_steering(node, data[1] >> 5, raw)) return false;
+    if (with_sync) laconic_node_sync(node, 1, 0, data[1] & 15U);
+    return true;
+}
+#endif
+
 bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment, uint8_t mask, uint8_t size) {
     if (node->state != LACONIC_WIRE_STATE_LOCKSTEP || node->lockstep.steps_due > 0) return false;
+#if LACONIC_NODE_WITH_HINGES
+    node->raw_input.hinged = node->hinges.input; /* of this node, which may be a copy of another */
+#endif
     return laconic_raw_take(&node->raw_input, node->input, node->plant.model.wheel_count, segment, mask, bytes, size);
 }
 

@@ -48,7 +48,7 @@ static uint32_t version(void) {
 #define METHOD_BITS 8 /* of IDENTITY.methods; a later method has none, and COMMIT refuses one that is not there */
 
 static void pack_identity(const laconic_node *node, uint8_t *data) {
-    data[1] = (uint8_t)(speaks_fd(node) << 4);
+    data[1] = (uint8_t)(speaks_fd(node) << 4 | LACONIC_NODE_WITH_HINGES << 5);
     data[2] = LACONIC_WIRE_VERSION;
     put16(data + 3, version());
     data[5] = sizeof(laconic_real);
@@ -80,7 +80,7 @@ static void pack_nu(const laconic_node *node, uint8_t *data) {
 
 static void pack_pose(const laconic_node *node, uint8_t *data) {
     laconic_pose pose;
-    laconic_pose_of(&pose, &node->plant.model, &node->plant.state);
+    laconic_node_pose_of(&pose, node);
     PUT(0, pose.x_m, POSE_X);
     PUT(1, pose.y_m, POSE_Y);
     PUT(2, pose.heading_wrapped_rad, POSE_HEADING);
@@ -88,7 +88,7 @@ static void pack_pose(const laconic_node *node, uint8_t *data) {
 
 static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
     laconic_real speed[LACONIC_MAX_WHEELS + 3] = {0};
-    laconic_plant_wheel_speeds(&node->plant, speed);
+    laconic_node_wheel_speeds(speed, node);
     data[1] = (uint8_t)(node->wheel_group << 5);
     for (uint8_t k = 0; k < 3; k++) PUT(k, speed[3 * node->wheel_group + k], WHEEL_SPEED_WHEEL_SPEED_1);
 }
@@ -100,7 +100,7 @@ static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
 
 static void pack_wheel_angle(const laconic_node *node, uint8_t *data) {
     laconic_real angle[LACONIC_MAX_WHEELS + 3] = {0};
-    laconic_plant_wheel_angles(&node->plant, angle);
+    laconic_node_wheel_angles(angle, node);
     for (uint8_t k = 0; k < 3; k++)
         PUT(k, laconic_angle_wrapped(angle[3 * node->angle_group + k]), WHEEL_ANGLE_WHEEL_ANGLE_1);
     data[1] = (uint8_t)(node->angle_group << 5);
@@ -122,6 +122,34 @@ static void pack_encoder(const laconic_node *node, uint8_t *data) {
     data[1] = (uint8_t)(node->encoder_wheel << 4);
     put32(data + 2, (uint32_t)laconic_encoder_shown(encoder, settings->encoder_wrap));
     put16(data + 6, (uint32_t)laconic_encoder_turns(encoder, counts));
+}
+#endif
+
+#if LACONIC_NODE_WITH_HINGES
+static void pack_velocity(const laconic_node *node, uint8_t *data) {
+    laconic_articulated_motion motion;
+    laconic_node_motion_of(&motion, node);
+    PUT(0, motion.velocity_m_per_s[0], VELOCITY_AHEAD);
+    PUT(1, motion.velocity_m_per_s[1], VELOCITY_LEFT);
+    PUT(2, motion.yaw_rate_rad_per_s, VELOCITY_YAW_RATE);
+}
+
+static void pack_hinge_angle(const laconic_node *node, uint8_t *data) {
+    const int32_t first = 3 * (int32_t)node->hinges.angle_group;
+    laconic_articulated_motion motion;
+    laconic_node_motion_of(&motion, node);
+    for (uint8_t k = 0; k < 3 && first + k < node->hinges.model.body_count; k++)
+        PUT(k, laconic_angle_wrapped(motion.hinge_angle_rad[first + k]), HINGE_ANGLE_HINGE_ANGLE_1);
+    data[1] = (uint8_t)(node->hinges.angle_group << 5);
+}
+
+static void pack_hinge_rate(const laconic_node *node, uint8_t *data) {
+    const int32_t first = 3 * (int32_t)node->hinges.rate_group;
+    laconic_articulated_motion motion;
+    laconic_node_motion_of(&motion, node);
+    data[1] = (uint8_t)(node->hinges.rate_group << 5);
+    for (uint8_t k = 0; k < 3 && first + k < node->hinges.model.body_count; k++)
+        PUT(k, motion.hinge_rate_rad_per_s[first + k], HINGE_RATE_HINGE_RATE_1);
 }
 #endif
 
@@ -149,7 +177,7 @@ static void pack_error_estimate(const laconic_node *node, uint8_t *data) {
 static bool is_deaf(const laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
     const bool tells_of_drives = plays_drives(node) || !is_running(node);
-    for (int32_t k = 0; tells_of_drives && k < node->drives.count && k < LACONIC_MAX_WHEELS; k++)
+    for (int32_t k = 0; tells_of_drives && k < node->drives.count && k < LACONIC_DRIVE_AXES; k++)
         if (node->drives.drive[k].unheard) return true;
 #endif
     return node->session.deaf != 0;
@@ -215,6 +243,11 @@ void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data) {
     case LACONIC_WIRE_WHEEL_ANGLE: pack_wheel_angle(node, data); break;
     case LACONIC_WIRE_IMU: pack_imu(node, data); break;
     case LACONIC_WIRE_ENCODER: pack_encoder(node, data); break;
+#endif
+#if LACONIC_NODE_WITH_HINGES
+    case LACONIC_WIRE_VELOCITY: pack_velocity(node, data); break;
+    case LACONIC_WIRE_HINGE_ANGLE: pack_hinge_angle(node, data); break;
+    case LACONIC_WIRE_HINGE_RATE: pack_hinge_rate(node, data); break;
 #endif
 #if LACONIC_NODE_WITH_ESTIMATE
     case LACONIC_WIRE_ERROR_ESTIMATE: pack_error_estimate(node, data); break;

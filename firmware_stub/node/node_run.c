@@ -5,6 +5,9 @@
 
 void laconic_node_clear_inputs(laconic_node *node) {
     memset(node->input, 0, sizeof node->input);
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) laconic_node_clear_hinge_inputs(node);
+#endif
     if (!LACONIC_NODE_DRIVES_ONLY) laconic_raw_restart(&node->raw_input);
 }
 
@@ -16,13 +19,22 @@ void laconic_node_publish(laconic_node *node) {
         node->pending |= BIT_OF(LACONIC_WIRE_WHEEL_SPEED);
     if (node->send & LACONIC_NODE_SEND_STATE_FD) node->pending |= BIT_OF(LACONIC_WIRE_STATE_FD);
     node->wheel_group = 0;
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) laconic_node_publish_hinges(node);
+#endif
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensor_outputs sensed;
     laconic_node_publish_sensors(node, &sensed);
-    laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], &sensed);
+    const laconic_sensor_outputs *shown = &sensed;
 #else
-    laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], NULL);
+    const laconic_sensor_outputs *shown = NULL;
 #endif
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node))
+        laconic_raw_collect_hinges(&node->raw_output, &node->hinges.model, &node->hinges.state, &node->input[0]);
+    else
+#endif
+        laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], shown);
     if (node->raw_output.size > 0)
         node->pending |= node->raw_fd ? BIT_OF(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT_OF(LACONIC_WIRE_RAW_OUTPUT);
 }
@@ -38,6 +50,9 @@ void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t r
 }
 
 static laconic_status step_unwatched(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) return laconic_node_step_hinges(node, steps, why);
+#endif
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node))
         return laconic_sensors_run(&node->sensors, &node->plant, &node->input[0], steps, why);
@@ -61,6 +76,9 @@ static laconic_status step(laconic_node *node, uint64_t steps, laconic_refusal *
 }
 
 static laconic_status step_sampled_unwatched(laconic_node *node, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_HINGES
+    if (has_hinges(node)) return laconic_node_step_hinges_sampled(node, why);
+#endif
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node)) return laconic_sensors_run_sampled(&node->sensors, &node->plant, node->input, why);
 #endif

@@ -15,6 +15,10 @@ static bool is_set(const laconic_sensor_settings *settings) {
     return false;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+bool laconic_node_sensors_are_set(const laconic_sensor_settings *settings) { return is_set(settings); }
+#endif
+
 uint8_t laconic_node_encoder_from(const laconic_node *node, int32_t wheel) {
     while (wheel < LACONIC_MAX_WHEELS && node->sensors.settings.encoder[wheel].counts_per_turn == 0) wheel++;
     return (uint8_t)wheel;

@@ -57,10 +57,15 @@ void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us)
     laconic_node_answer_again(node, LACONIC_WIRE_OPEN);
 }
 
+/* Where a frame is counted: STEERING, whose identifier lies among the node's, behind those of all nodes. */
+static uint8_t place_of(uint8_t offset) {
+    return LACONIC_NODE_WITH_HINGES && offset > LACONIC_WIRE_RIG_OFFSETS ? LACONIC_WIRE_RIG_OFFSETS : offset;
+}
+
 /* By how many counts the frame is ahead of the last one of its kind; −1: its protection is wrong. */
 static int ahead_of_last(const laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t key) {
     const uint8_t mask = LACONIC_NODE_CAN_FD && laconic_wire[offset].fd ? 255U : 15U;
-    const uint32_t last = node->session.count[offset];
+    const uint32_t last = node->session.count[place_of(offset)];
     const uint32_t ahead = (laconic_counter_of(offset, data) - last) & mask;
     return node->session.open && laconic_keyed_is_right(offset, data, key, last + ahead) ? (int)ahead : -1;
 }
@@ -71,7 +76,7 @@ static bool refuse(laconic_node *node, int ahead) {
 }
 
 static bool accept(laconic_node *node, uint8_t offset, int ahead) {
-    node->session.count[offset] += (uint32_t)ahead;
+    node->session.count[place_of(offset)] += (uint32_t)ahead;
     count(&node->counters.accepted);
     return true;
 }
@@ -96,6 +101,9 @@ void laconic_node_begin_run(laconic_node *node) {
     session->armed = 0;
     session->deaf = 0;
     memset(&session->count[LACONIC_WIRE_RUN_FIRST], 0, LACONIC_WIRE_RUN_OFFSETS * sizeof session->count[0]);
+#if LACONIC_NODE_WITH_HINGES
+    session->count[LACONIC_WIRE_RIG_OFFSETS] = 0;
+#endif
 }
 
 /* A motion frame acts only if the frame before it was right, too, and had the count before. So a single stale frame

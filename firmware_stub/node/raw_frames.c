@@ -45,11 +45,52 @@ static int32_t numbers_of(uint8_t take, int32_t wheel_count) {
     return count;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+static int32_t numbers_of_hinges(const laconic_raw_input *raw) {
+    const uint8_t take = raw->hinge_count > 0 ? raw->take_hinges : 0U;
+    int32_t count = (take & LACONIC_RAW_TWIST) != 0 ? 3 : 0;
+    if (take & LACONIC_RAW_HINGE_VOLTAGE) count += raw->hinge_count;
+    if (take & LACONIC_RAW_HINGE_TORQUE) count += raw->hinge_count;
+    if (take & LACONIC_RAW_STEERING_RATE) count += raw->hinge_count;
+    return count;
+}
+
+/* Address of number k of those of hinges. */
+static laconic_real *slot_of_hinge(const laconic_raw_input *raw, int32_t sample, int32_t k) {
+    laconic_articulated_input *input = &raw->hinged[sample];
+    laconic_real *const all[] = {input->hinge_voltage_V, input->hinge_torque_Nm, input->hinge_rate_rad_per_s};
+    for (uint32_t group = 0; group < 3U; group++) {
+        if ((raw->take_hinges >> group & 1U) == 0) continue;
+        if (k < raw->hinge_count) return &all[group][k];
+        k -= raw->hinge_count;
+    }
+    return &input->twist[k];
+}
+
+/* Numbers of one input, and how many inputs there are. */
+static int32_t numbers_of_each(const laconic_raw_input *raw, int32_t wheel_count) {
+    return numbers_of(raw->take, wheel_count) + numbers_of_hinges(raw);
+}
+
+static int32_t samples_of(const laconic_raw_input *raw) { return raw->hinge_count > 0 ? 2 : 3; }
+
+static laconic_real *slot_of(const laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, int32_t sample,
+                             int32_t k) {
+    const int32_t of_wheels = numbers_of(raw->take, wheel_count);
+    if (k < of_wheels) return slot_in(&input[sample], raw->take, wheel_count, k);
+    return slot_of_hinge(raw, sample, k - of_wheels);
+}
+#else
+#define numbers_of_each(raw, wheel_count) numbers_of((raw)->take, wheel_count)
+#define samples_of(raw) 3
+#define slot_of(raw, input, wheel_count, sample, k) slot_in(&(input)[sample], (raw)->take, wheel_count, k)
+#endif
+
 static void store(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count) {
-    const int32_t each = numbers_of(raw->take, wheel_count);
-    const int32_t total = raw->take & LACONIC_RAW_SAMPLED ? 3 * each : each;
+    const int32_t each = numbers_of_each(raw, wheel_count);
+    const int32_t total = raw->take & LACONIC_RAW_SAMPLED ? samples_of(raw) * each : each;
     const int32_t sample = raw->position / each;
-    laconic_real *to = slot_in(&input[sample], raw->take, wheel_count, raw->position % each);
+    laconic_real *to = slot_of(raw, input, wheel_count, sample, raw->position % each);
     memcpy(to, raw->number, sizeof raw->number);
     raw->position++;
     raw->filled = 0;
@@ -60,7 +101,7 @@ bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wh
                       uint8_t segment_mask, const uint8_t *bytes, uint8_t count) {
     if (raw->broken && segment == 0) laconic_raw_restart(raw);
     const bool expected = !raw->broken && !raw->complete && segment == raw->segment;
-    if (!expected || numbers_of(raw->take, wheel_count) == 0) {
+    if (!expected || numbers_of_each(raw, wheel_count) == 0) {
         raw->broken = true;
         return false;
     }
@@ -124,6 +165,45 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
     raw->position = 0;
     raw->segment = 0;
 }
+
+#if LACONIC_NODE_WITH_HINGES
+static laconic_real *copied(laconic_real *to, const laconic_real *numbers, int32_t count) {
+    for (int32_t i = 0; i < count; i++) *to++ = numbers[i];
+    return to;
+}
+
+/* Outputs that every vehicle has, in the order of all others. */
+static laconic_real *collect_motion(laconic_real *to, uint8_t send, const laconic_articulated_motion *motion,
+                                    int32_t wheel_count) {
+    if (send & LACONIC_RAW_POSE) {
+        *to++ = motion->x_m;
+        *to++ = motion->y_m;
+        *to++ = motion->heading_rad;
+    }
+    if (send & LACONIC_RAW_WHEEL_SPEED) to = copied(to, motion->wheel_speed_rad_per_s, wheel_count);
+    if (send & LACONIC_RAW_WHEEL_ANGLE) to = copied(to, motion->wheel_angle_rad, wheel_count);
+    if (send & LACONIC_RAW_ENERGY) *to++ = motion->energy_J;
+    return to;
+}
+
+void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulated_model *model,
+                                const laconic_articulated_state *state, const laconic_input *held) {
+    laconic_articulated_motion motion;
+    laconic_articulated_motion_of(&motion, model, state);
+    laconic_real *to = collect_motion(raw->number, raw->send, &motion, model->wheel_count);
+    if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
+        to = copied(to, held->axle_torque_Nm, model->wheel_count);
+    if (raw->send_hinges & LACONIC_RAW_VELOCITY) {
+        to = copied(to, motion.velocity_m_per_s, 2);
+        *to++ = motion.yaw_rate_rad_per_s;
+    }
+    if (raw->send_hinges & LACONIC_RAW_HINGE_ANGLE) to = copied(to, motion.hinge_angle_rad, model->body_count);
+    if (raw->send_hinges & LACONIC_RAW_HINGE_RATE) to = copied(to, motion.hinge_rate_rad_per_s, model->body_count);
+    raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
+    raw->position = 0;
+    raw->segment = 0;
+}
+#endif
 
 bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room) {
     const uint16_t left = (uint16_t)(raw->size - raw->position);

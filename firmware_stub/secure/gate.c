@@ -22,7 +22,7 @@ static bool is_ours(const laconic_gate *gate, const laconic_frame *frame, uint32
 }
 
 static bool needs_code(const laconic_frame *frame, uint32_t offset) {
-    return offset < LACONIC_WIRE_RIG_OFFSETS && offset != LACONIC_WIRE_HELLO && !frame->remote;
+    return LACONIC_WIRE_FROM_RIG(offset) && offset != LACONIC_WIRE_HELLO && !frame->remote;
 }
 
 static uint16_t number_of(const laconic_gate *gate, uint32_t offset) { return (uint16_t)(gate->id_base + offset); }

@@ -22,6 +22,7 @@ PARTS = {
     "mutate": "small faults in the C sources, which the C tests should notice",
     "population": "made-up vehicles beside their true motion",
     "proof": "Frama-C: no undefined behaviour for any input",
+    "ros2": "robots on ROS 2 among broken messages and packets",
     "rules": "what CONTRIBUTING.md asks of every file",
     "sizes": "lines and files of product, tests and apparatus",
     "targets": "the same bits from other compilers, processors and boards",

@@ -35,7 +35,7 @@
 
 #include "laconic/laconic.h"
 
-/* Of the methods, in the order of laconic_articulated_method. */
+/* The names of the methods, in the order of laconic_articulated_method. */
 #define LACONIC_ARTICULATED_METHOD_NAMES "auto", "rk4", "circle", "moebius-4"
 
 #if LACONIC_MAX_BODIES > 0
@@ -285,7 +285,7 @@ laconic_status laconic_articulated_jump(const laconic_articulated_model *model, 
 /* ------------------------------------------------------------------------ methods and steps -- */
 
 typedef enum laconic_articulated_method {
-    LACONIC_ARTICULATED_AUTO = 0,     /* every vehicle and step; divides a step where motion is fast           */
+    LACONIC_ARTICULATED_AUTO = 0,     /* divides a step where motion is fast, and judges parts by their energy  */
     LACONIC_ARTICULATED_RK4 = 1,      /* order 4; h v/a < 2.78 (a: trail of a caster) and h·r < 2.78            */
     LACONIC_ARTICULATED_CIRCLE = 2,   /* order 4; following angles by exact maps of the circle; h·r < 2.78      */
     LACONIC_ARTICULATED_MOEBIUS_4 = 3 /* order 4; any damping. Order 3 with rows left over, and 2, but stable, where
@@ -332,7 +332,8 @@ laconic_status laconic_articulated_integrator_prepare(laconic_articulated_integr
  *   WHEELS_DISAGREE               wheels ask for different turning centres, so nothing moves: item and value are two
  *                                 of these wheels
  *   MASSLESS_HINGE                at these angles an own hinge turns without inertia
- *   STEP_BEYOND_TRAIL_LIMIT       rk4: a caster turns too fast for the step (limit: the largest step)
+ *   STEP_BEYOND_TRAIL_LIMIT       rk4: the wheels of a body turn it too fast for the step (limit: the largest step);
+ *                                 auto: not even by 4096 parts that judge themselves. The item is the body
  *   STEP_BEYOND_GYROSCOPIC_LIMIT  rk4, circle: the yaw rate is too large for the step
  *   STEP_SINGULAR                 moebius-4: in this state the step has no solution
  *   OVERFLOW                      a result leaves the range */

@@ -107,9 +107,9 @@
     X(WHEELS_DISAGREE, "wheels disagree", /* value: number of another wheel */ \
       "this wheel and wheel # ask for different turning centres, so that nothing moves; use coordinated hinges, or " \
       "give ground.friction_coefficient, so that wheels slip") \
-    X(STEP_BEYOND_TRAIL_LIMIT, "step beyond trail limit", /* explicit methods: h·v/a above their limit */ \
-      "# s is unstable with this method because a caster follows too fast (speed over trail); use at most @ s, or " \
-      "auto") \
+    X(STEP_BEYOND_TRAIL_LIMIT, "step beyond trail limit", /* of a body: h·v/a above what the method follows */ \
+      "a step of # s is too long, as the wheels of this body follow too fast (speed over trail, their distance from " \
+      "the hinge); use at most @ s, a longer trail, or another method (auto divides steps)") \
     X(BELOW_LIMIT, "below limit", \
       "# is below @; give @ or more") \
     X(COORDINATED_SLIPS, "coordinated slips", /* a coordinated hinge on ground with friction */ \

@@ -8,6 +8,9 @@
  *   moebius-4 beyond that, in 64 parts or as many more (to 256) as casters and yaw ask for. Decay may then be of any
  *             rate. A caster that is still too fast is led by exact maps and follows what is slower than a part
  *   halves    a part of moebius-4 that has no solution is taken in halves
+ *   judged    where a caster is faster than all that (rate · step above 64), and where nothing drives or damps a
+ *             vehicle with a short trail and these parts miss its energy: parts that judge themselves
+ *             (articulated_adaptive.c)
  *
  * The rule depends on model, state and step alone, so the same run makes the same choices everywhere. */
 #include "articulated_step.h"
@@ -18,6 +21,8 @@
 #define MOST_AUTO_PARTS ((uint32_t)256)
 #define FEWEST_STIFF_PARTS ((uint32_t)64)
 #define LARGEST_RATE_OF_PART R(0.25) /* rate · part */
+#define SHORT_TRAIL_M R(0.012)
+#define SHORT_SHARE R(0.04) /* of the vehicle's size */
 
 /* Halves a part until the rate fits, no further than `smallest`. */
 static uint32_t part_for(real part_per_unit, uint32_t part, uint32_t smallest, real rate_step) {
@@ -77,7 +82,7 @@ static laconic_status stiff_part(laconic_articulated_state *state, const laconic
     return LACONIC_OK;
 }
 
-/* How many parts casters and yaw ask of moebius-4 at the posture of the step's start. */
+/* How many parts casters and yaw ask of moebius-4 at the posture of the step's start; 0: more than this rule has. */
 static uint32_t stiff_part_size(const laconic_articulated_state *state, const laconic_articulated_model *m,
                                 const articulated_course *course) {
     articulated_sweep s;
@@ -87,6 +92,7 @@ static uint32_t stiff_part_size(const laconic_articulated_state *state, const la
     if (sweep_outward(&s, m, eta, &course->start) != 0) return WHOLE_STEP;
     const posture_rates fast = rates_of_posture(&s, m);
     const real caster = laconic_root(fast.caster_square), rate = caster > fast.yaw ? caster : fast.yaw;
+    if (!(caster * course->step_s <= LARGEST_AUTO_RATE)) return 0U;
     return part_for(R(1) / (real)WHOLE_STEP, WHOLE_STEP / FEWEST_STIFF_PARTS, WHOLE_STEP / MOST_AUTO_PARTS,
                     rate * course->step_s);
 }
@@ -100,6 +106,11 @@ RARE laconic_status step_in_parts(laconic_articulated_state *state, const laconi
         laconic_refusal found = ALL_ZERO;
         if (p.stiff && !was_stiff) p.part = stiff_part_size(&after, m, course);
         was_stiff = p.stiff;
+        if (p.part == 0U) {
+            const laconic_status status = laconic_articulated_adaptive(&after, m, course, p.done, why);
+            if (status == LACONIC_OK) *state = after;
+            return status;
+        }
         const laconic_status status =
             p.stiff ? stiff_part(&after, m, course, &p, &found) : explicit_part(&after, m, course, &p, &found);
         if (status != LACONIC_OK) return refuse(why, status, found.field, found.item, found.value, found.limit);
@@ -108,15 +119,48 @@ RARE laconic_status step_in_parts(laconic_articulated_state *state, const laconi
     return LACONIC_OK;
 }
 
-laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
-                                        const laconic_articulated_integrator *integrator,
-                                        const articulated_course *course, laconic_refusal *why) {
+static laconic_status auto_by_rates(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                    const laconic_articulated_integrator *integrator, const articulated_course *course,
+                                    laconic_refusal *why) {
     auto_progress p = {0U, WHOLE_STEP / (uint32_t)integrator->parts, integrator->parts > (int32_t)MOST_AUTO_PARTS};
     laconic_refusal found = ALL_ZERO;
     if (p.part < WHOLE_STEP) return step_in_parts(state, m, course, p, why);
     const laconic_status status = explicit_part(state, m, course, &p, &found);
     if (status != LACONIC_OK) return refuse(why, status, found.field, found.item, found.value, found.limit);
     return p.done == WHOLE_STEP ? LACONIC_OK : step_in_parts(state, m, course, p, why);
+}
+
+/* Whether the wheels of a body lie so near to its hinge that errors of its angle count many times in its rate. */
+static bool has_short_trail(const laconic_articulated_model *m) {
+    for (int32_t b = 0; b < m->body_count; b++) {
+        const vector n = m->link[b].axle_per_lever; /* 1/trail in size */
+        const real inverse_square = n.x * n.x + n.y * n.y;
+        if (m->link[b].motion != LACONIC_MOTION_FOLLOWING) continue;
+        if (inverse_square * (SHORT_TRAIL_M * SHORT_TRAIL_M) > R(1)) return true;
+        if (inverse_square * (SHORT_SHARE * SHORT_SHARE) * (m->length_m * m->length_m) > R(1)) return true;
+    }
+    return false;
+}
+
+/* A step of a vehicle that keeps its energy: by parts that judge themselves where the rule of parts misses it. */
+RARE laconic_status step_that_keeps_energy(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                           const laconic_articulated_integrator *integrator,
+                                           const articulated_course *course, laconic_refusal *why) {
+    laconic_articulated_state after = *state;
+    const articulated_drive *end = course->constant ? &course->start : &course->end;
+    const laconic_status status = auto_by_rates(&after, m, integrator, course, why);
+    if (status != LACONIC_OK || !laconic_articulated_hold_energy(&after, state, m, end))
+        return laconic_articulated_adaptive(state, m, course, 0U, why);
+    *state = after;
+    return LACONIC_OK;
+}
+
+laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                        const laconic_articulated_integrator *integrator,
+                                        const articulated_course *course, laconic_refusal *why) {
+    if (laconic_articulated_keeps_energy(m, course) && has_short_trail(m))
+        return step_that_keeps_energy(state, m, integrator, course, why);
+    return auto_by_rates(state, m, integrator, course, why);
 }
 
 int32_t laconic_articulated_parts_for(real rate_step) {

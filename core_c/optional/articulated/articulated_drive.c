@@ -132,7 +132,6 @@ static void twist_at(articulated_drive *drive, const articulated_course *course,
 static void commands_at(articulated_drive *drive, const articulated_course *course, const laconic_articulated_model *m,
                         real at) {
     for (int32_t k = 0; k < m->body_count; k++) {
-        drive->rate[k] = drive->acceleration[k] = R(0);
         if (m->link[k].motion != LACONIC_MOTION_PRESCRIBED) continue;
         drive->rate[k] = cubic_value(&course->rate[k], at);
         drive->acceleration[k] = cubic_rate(&course->rate[k], at, course->rate_per_step);
@@ -141,12 +140,10 @@ static void commands_at(articulated_drive *drive, const articulated_course *cour
     if (course->turns) twist_at(drive, course, at);
 }
 
-void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course,
-                                      const laconic_articulated_model *m) {
+void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course) {
     moment->at = R(-1);
     if (course->constant) return;
-    forces_at(&moment->drive, course, m, R(0));
-    for (int k = 0; k < 3; k++) moment->drive.twist[k] = course->start.twist[k];
+    moment->drive = course->start; /* what does not vary stays; of hinges without a command rates are 0 */
 }
 
 void laconic_articulated_move_moment(articulated_moment *moment, const articulated_course *course,

@@ -249,7 +249,7 @@ static laconic_status base_step_of(moebius_point *p, moebius_means *means, const
     articulated_sweep s;
     articulated_moment moment;
     const real half = R(0.5) * share;
-    laconic_articulated_begin_moment(&moment, course, m);
+    laconic_articulated_begin_moment(&moment, course);
     const articulated_drive *drive = commands_of(&moment, course, m, from + half);
     real d[LACONIC_MAX_VELOCITIES], before[LACONIC_MAX_VELOCITIES];
     laconic_status status = commanded_ready(&s, m, p, drive, why);
@@ -314,7 +314,7 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
     if (status == LACONIC_OK) status = base_step_of(&twice, &means[2], m, &factors[1], course, from + half, half, why);
     if (status != LACONIC_OK) return status;
     combine_points(&by, m, state, &once, &twice, means, h * m->fastest_swing_per_s > R(1) ? R(0) : R(1) / R(3));
-    laconic_articulated_begin_moment(&moment, course, m);
+    laconic_articulated_begin_moment(&moment, course);
     const articulated_drive *end = commands_of(&moment, course, m, from + share);
     laconic_articulated_turn_coordinated(&by, m, state, end);
     status = laconic_articulated_accept(state, m, &by, h);

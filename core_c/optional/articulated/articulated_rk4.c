@@ -22,13 +22,23 @@ typedef struct stage_sums {
     direction second[LACONIC_MAX_BODIES]; /* z₂ */
 } stage_sums;
 
+/* The body whose wheels follow as fast as that. */
+static int32_t body_of_rate(const articulated_sweep *s, const laconic_articulated_model *m, real caster_square) {
+    int32_t found = 0;
+    for (int32_t b = m->body_count; b > 0; b--) {
+        const real rate = following_speed(&m->link[b - 1], s->twist[b]);
+        if (m->link[b - 1].motion == LACONIC_MOTION_FOLLOWING && rate * rate >= R(0.999) * caster_square) found = b;
+    }
+    return found;
+}
+
 /* Casters and yaw rates that are too fast for a stable step. */
 static laconic_status check_rates(const articulated_sweep *s, const laconic_articulated_model *m, real h, bool circle,
                                   real largest, laconic_refusal *why) {
     const posture_rates fast = rates_of_posture(s, m);
     if (!circle && !(h * h * fast.caster_square <= largest * largest))
-        return refuse(why, LACONIC_STEP_BEYOND_TRAIL_LIMIT, LACONIC_FIELD_STEP, 0, h,
-                      largest / laconic_root(fast.caster_square));
+        return refuse(why, LACONIC_STEP_BEYOND_TRAIL_LIMIT, (laconic_field)LACONIC_FIELD_OF_BODY_HINGE,
+                      body_of_rate(s, m, fast.caster_square), h, largest / laconic_root(fast.caster_square));
     if (!(h * fast.yaw <= largest))
         return refuse(why, LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0, h, largest / fast.yaw);
     return LACONIC_OK;
@@ -70,22 +80,38 @@ INLINE void turn_hinges(stage_sums *sums, articulated_sweep *s, const laconic_ar
         }
         if (link->motion == LACONIC_MOTION_COORDINATED) continue;
         sums->by.turn_rad[b] += stage_weight[g] * s->rate[b];
+        if (g == 3) continue; /* no stage follows */
         const real turn = ahead * s->rate[b];
         s->toward[b] = turned_by(start->toward[b], turn);
         s->angle_rad[b] = start->angle_rad[b] + turn;
     }
 }
 
-INLINE void clear_sums(stage_sums *sums, const laconic_articulated_model *m) {
-    for (int32_t i = 0; i < m->dof; i++) sums->by.eta[i] = R(0);
-    for (int32_t b = 0; b <= m->body_count; b++) sums->by.mean[b] = none;
-    for (int32_t b = 0; b < m->body_count; b++) sums->by.turn_rad[b] = R(0);
+/* Directions and angles of the start, which are those of the first stage. */
+INLINE void begin_hinges(stage_sums *sums, articulated_sweep *s, articulated_sweep *start,
+                         const laconic_articulated_model *m, const laconic_articulated_state *state) {
+    start->angle_rad[0] = R(0); /* as in take_posture_of */
+    for (int32_t b = 0; b < m->body_count; b++) {
+        take_hinge_of(start, m, state, b);
+        s->toward[b] = start->toward[b];
+        s->angle_rad[b] = start->angle_rad[b];
+        sums->by.turn_rad[b] = R(0);
+    }
+    forget_sizes(s, m);
 }
 
 /* η' and mean twists; η of the next stage. */
 INLINE void add_stage(stage_sums *sums, const articulated_sweep *s, const laconic_articulated_model *m, real *eta,
                       const real *eta0, const real *eta_rate, int g, real ahead) {
     const real share = stage_weight[g];
+    if (g == 0) { /* the weight is 1, and nothing is there yet */
+        for (int32_t i = 0; i < m->dof; i++) {
+            sums->by.eta[i] = eta_rate[i];
+            eta[i] = eta0[i] + ahead * eta_rate[i];
+        }
+        for (int32_t b = 0; b <= m->body_count; b++) sums->by.mean[b] = s->twist[b];
+        return;
+    }
     for (int32_t i = 0; i < m->dof; i++) {
         sums->by.eta[i] += share * eta_rate[i];
         eta[i] = eta0[i] + ahead * eta_rate[i];
@@ -125,16 +151,9 @@ INLINE laconic_status runge_kutta(stage_sums *sums, const laconic_articulated_st
     direction facing = heading;
     real eta0[LACONIC_MAX_VELOCITIES], eta[LACONIC_MAX_VELOCITIES], rate[LACONIC_MAX_VELOCITIES];
     real correction[LACONIC_MAX_VELOCITIES];
-    take_posture_of(&start, m, state);
-    take_eta(eta0, m, state);
-    clear_sums(sums, m);
-    laconic_articulated_begin_moment(&moment, course, m);
-    forget_sizes(&s, m);
-    for (int32_t b = 0; b < m->body_count; b++) {
-        s.toward[b] = start.toward[b];
-        s.angle_rad[b] = start.angle_rad[b];
-    }
-    for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i];
+    begin_hinges(sums, &s, &start, m, state);
+    for (int32_t i = 0; i < m->dof; i++) eta[i] = eta0[i] = state->eta[i].value;
+    laconic_articulated_begin_moment(&moment, course);
     for (int g = 0; g < 4; g++) {
         const articulated_drive *drive = commands_of(&moment, course, m, from + share * stage_at[g]);
         const real ahead = h * (g < 3 ? stage_at[g + 1] : R(0));

@@ -39,8 +39,7 @@ void laconic_articulated_drive_kept(articulated_drive *drive, const laconic_arti
 /* Cubics and flags of a course whose ends are set and that is not constant. */
 void laconic_articulated_course_of(articulated_course *course, const laconic_articulated_model *m);
 
-void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course,
-                                      const laconic_articulated_model *m);
+void laconic_articulated_begin_moment(articulated_moment *moment, const articulated_course *course);
 void laconic_articulated_move_moment(articulated_moment *moment, const articulated_course *course,
                                      const laconic_articulated_model *m, real at);
 
@@ -87,14 +86,18 @@ static inline direction direction_of_heading(const laconic_heading *heading) {
     return laconic_direction_of_binary_angle(heading->fraction);
 }
 
-/* Directions of all hinges, and the angles of those with springs. */
+/* Direction of hinge b + 1, and its angle where it has a spring. */
+INLINE void take_hinge_of(articulated_sweep *s, const laconic_articulated_model *m,
+                          const laconic_articulated_state *state, int32_t b) {
+    s->toward[b] = direction_of_binary_angle(state->hinge[b].fraction);
+    s->angle_rad[b] = R(0);
+    if (m->link[b].stiffness_Nm > R(0)) s->angle_rad[b] = heading_unwrapped(&state->hinge[b]) - m->link[b].rest_rad;
+}
+
 INLINE void take_posture_of(articulated_sweep *s, const laconic_articulated_model *m,
                             const laconic_articulated_state *state) {
-    for (int32_t b = 0; b < m->body_count; b++) {
-        s->toward[b] = direction_of_binary_angle(state->hinge[b].fraction);
-        s->angle_rad[b] = R(0);
-        if (m->link[b].stiffness_Nm > R(0)) s->angle_rad[b] = heading_unwrapped(&state->hinge[b]) - m->link[b].rest_rad;
-    }
+    s->angle_rad[0] = R(0); /* where LACONIC_MAX_BODIES is 1, compilers doubt that the loop sets it */
+    for (int32_t b = 0; b < m->body_count; b++) take_hinge_of(s, m, state, b);
     forget_sizes(s, m);
 }
 
@@ -139,6 +142,12 @@ typedef struct posture_rates {
     real caster_square, yaw;
 } posture_rates;
 
+/* v/a of a body, as rates_of_posture has its square */
+static inline real following_speed(const laconic_link *link, vector v) {
+    const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
+    return laconic_root((v.x * v.x + v.y * v.y) * (mx * mx + my * my));
+}
+
 INLINE posture_rates rates_of_posture(const articulated_sweep *s, const laconic_articulated_model *m) {
     posture_rates fast = {R(0), magnitude(s->twist[0].z)};
     for (int32_t b = 1; b <= m->body_count; b++) {
@@ -169,6 +178,24 @@ laconic_status laconic_articulated_moebius_4(laconic_articulated_state *state, c
                                              laconic_refusal *why);
 /* Into how many parts a rate divides a step of auto; more than 256: moebius-4 takes it. */
 int32_t laconic_articulated_parts_for(real rate_step);
+
+/* Whether nothing drives or damps the vehicle over the step, so that its energy stays. */
+bool laconic_articulated_keeps_energy(const laconic_articulated_model *m, const articulated_course *course);
+
+/* For such a vehicle: whether the energy after a step is right. What a method's error adds is taken back. */
+bool laconic_articulated_hold_energy(laconic_articulated_state *after, const laconic_articulated_state *before,
+                                     const laconic_articulated_model *m, const articulated_drive *drive);
+
+/* Refuses a step for the body whose wheels follow fastest; `largest`: of step times rate. */
+laconic_status laconic_articulated_refuse_trail(const laconic_articulated_model *m,
+                                                const laconic_articulated_state *state, const articulated_drive *drive,
+                                                real step_s, real largest, laconic_refusal *why);
+
+#define LARGEST_AUTO_RATE R(64) /* rate · step, of what auto follows by its rule of parts */
+
+/* The step from `done` of 2²⁰ units on, in parts that judge themselves; refuses as the function above. */
+laconic_status laconic_articulated_adaptive(laconic_articulated_state *state, const laconic_articulated_model *m,
+                                            const articulated_course *course, uint32_t done, laconic_refusal *why);
 
 laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
                                         const laconic_articulated_integrator *integrator,

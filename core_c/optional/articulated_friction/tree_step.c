@@ -54,10 +54,11 @@ static void tree_pull(tree_part *p, const tree_state *s) {
     const bool world = in->world_force_N[0] != R(0) || in->world_force_N[1] != R(0);
     for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = none;
     p->pull[0] = vector_of(in->body_force_N[0], in->body_force_N[1], in->body_moment_Nm);
+    p->end = direction_with(R(1), R(0));
     if (!world && !p->m->sloped) return;
-    const direction end = direction_of_binary_angle(
+    p->end = direction_of_binary_angle(
         (laconic_binary_angle)(s->heading.fraction + laconic_binary_angle_of(p->h * s->z[2])));
-    const vector force = tree_seen(end, in->world_force_N), down = tree_seen(end, p->m->pull_m_per_s2);
+    const vector force = tree_seen(p->end, in->world_force_N), down = tree_seen(p->end, p->m->pull_m_per_s2);
     p->pull[0] = plus(p->pull[0], force);
     p->pull[0].z += in->world_force_point_m[0] * force.y - in->world_force_point_m[1] * force.x;
     for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));

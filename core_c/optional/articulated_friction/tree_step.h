@@ -39,6 +39,7 @@ typedef struct tree_part {
     const laconic_tree_input *in;
     real h;
     tree_posture at;
+    direction end;               /* heading of body 0 at the end; a local would cost 120 instructions more */
     vector carried[TREE_BODIES]; /* the bodies' velocities, in the axes at the end               */
     vector pull[TREE_BODIES];    /* forces and moments from outside, axes at the end             */
     real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */

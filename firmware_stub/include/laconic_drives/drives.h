@@ -7,6 +7,9 @@
 #define LACONIC_DRIVES_DRIVES_H
 
 #include "laconic_drives/settings.h"
+#if LACONIC_NODE_WITH_HINGES
+#include "laconic/articulated.h"
+#endif
 
 /* As after power-up, from a plan that laconic_drive_plan_check() has accepted: every drive is off at count 0 and
  * measures its wheel's speed. `axes`: memory for protocol->axis_bytes of each drive, aligned to 8 bytes. */
@@ -21,6 +24,24 @@ void laconic_drives_on_frame(laconic_drives *drives, const laconic_frame *frame,
  * into `held` and leaves its other numbers. A refusal is that of laconic_plant_run; the drives are then off. */
 laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant, laconic_input *held, uint32_t now_us,
                                    laconic_refusal *why);
+
+#if LACONIC_NODE_WITH_HINGES
+/* The same for a vehicle with hinges. */
+void laconic_drives_start_with_hinges(laconic_drives *drives, const laconic_drive_plan *plan,
+                                      const laconic_drive_protocol *protocol, void *axes,
+                                      const laconic_articulated_model *model, const laconic_articulated_state *state,
+                                      laconic_real step_s, uint32_t now_us);
+
+/* Before a step: writes the axle torques of wheels into `held`, and of steering axes the torque into both inputs, or
+ * the rate of a prescribed one into that of the end. The step then runs from one input to the other. */
+void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articulated_model *model, laconic_input *held,
+                                    laconic_articulated_input input[2], uint32_t now_us);
+
+/* After it: what the encoders show. */
+void laconic_drives_measure_with_hinges(laconic_drives *drives, const laconic_articulated_model *model,
+                                        const laconic_articulated_state *before,
+                                        const laconic_articulated_state *after);
+#endif
 
 /* The next frame of the protocol; false iff there is none. */
 bool laconic_drives_next_frame(laconic_drives *drives, laconic_frame *frame);

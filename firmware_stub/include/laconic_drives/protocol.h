@@ -4,8 +4,13 @@
 
 #include "laconic_drives/drive.h"
 #include "laconic_node/frame.h"
+#include "laconic_wire.h" /* LACONIC_NODE_WITH_HINGES */
 
-/* The drives of one vehicle on one bus, in the order of their wheels. A wheel without motor has none, so drive k turns
+/* What a drive can turn: a wheel, or in a node with hinges a steering axis. Those of a vehicle count from its first
+ * wheel; hinge b follows its last wheel as number wheel_count + b. */
+#define LACONIC_DRIVE_AXES (LACONIC_MAX_WHEELS + LACONIC_NODE_WITH_HINGES * LACONIC_MAX_BODIES)
+
+/* The drives of one vehicle on one bus, in the order of their axes. A wheel without motor has none, so drive k turns
  * wheel[k]. */
 typedef struct laconic_drives {
     const struct laconic_drive_protocol *protocol; /* NULL: none */
@@ -14,8 +19,8 @@ typedef struct laconic_drives {
     laconic_real step_s;
     laconic_real watchdog_s; /* of silence of the controller that the drives bear; 0: what the protocol says */
     uint32_t now_us;         /* of the protocol's last call */
-    uint8_t wheel[LACONIC_MAX_WHEELS];
-    laconic_wheel_drive drive[LACONIC_MAX_WHEELS];
+    uint8_t wheel[LACONIC_DRIVE_AXES]; /* or steering axis */
+    laconic_wheel_drive drive[LACONIC_DRIVE_AXES];
 } laconic_drives;
 
 /* A protocol translates frames into targets and measured values into frames; it has neither clock nor bus. Time is a

@@ -25,7 +25,7 @@
 typedef struct laconic_drive_plan {
     int32_t protocol; /* 0: no drives */
     laconic_real watchdog_s;
-    laconic_drive_settings drive[LACONIC_MAX_WHEELS]; /* of each wheel; node_id < 0: it has none */
+    laconic_drive_settings drive[LACONIC_DRIVE_AXES]; /* of each wheel and steering axis; node_id < 0: it has none */
 } laconic_drive_plan;
 
 /* Rows as in vehicle.h: X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED). */
@@ -64,9 +64,9 @@ enum {
 /* All zero, and no wheel has a drive. */
 void laconic_drive_plan_begin(laconic_drive_plan *plan);
 
-/* OK iff the plan fits the protocol (not NULL) and a vehicle of so many wheels. Refuses as a vehicle's numbers are, by
- * the rules of the rows above, and with ABOVE_LIMIT a node id that the protocol does not have, that two drives have, or
- * of a wheel that does not exist. */
+/* OK iff the plan fits the protocol (not NULL) and a vehicle of so many wheels and steering axes. Refuses as a
+ * vehicle's numbers are, by the rules of the rows above, and with ABOVE_LIMIT a node id that the protocol does not
+ * have, that two drives have, or of an axis that does not exist. */
 laconic_status laconic_drive_plan_check(const laconic_drive_plan *plan, const laconic_drive_protocol *protocol,
                                         int32_t wheel_count, laconic_refusal *why);
 

@@ -4,7 +4,19 @@
 
 #include "laconic/laconic.h"
 #include "laconic_drives/settings.h"
-#include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS */
+#include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS, LACONIC_NODE_WITH_HINGES */
+#if LACONIC_NODE_WITH_HINGES
+#include "laconic/articulated.h"
+
+/* What a vehicle with hinges has besides its carriage and wheels: its bodies, start, and commands at the start. */
+typedef struct laconic_node_bodies {
+    int32_t body_count; /* 0: a vehicle without hinges */
+    int32_t wheel_body[LACONIC_MAX_WHEELS];
+    laconic_body body[LACONIC_MAX_BODIES];
+    laconic_articulated_start start; /* its place and heading are those of every vehicle */
+    laconic_real hinge_rate_rad_per_s[LACONIC_MAX_BODIES], twist[3];
+} laconic_node_bodies;
+#endif
 
 typedef struct laconic_parameters {
     laconic_vehicle vehicle;
@@ -16,6 +28,9 @@ typedef struct laconic_parameters {
 #endif
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensor_settings sensors;
+#endif
+#if LACONIC_NODE_WITH_HINGES
+    laconic_node_bodies bodies;
 #endif
 } laconic_parameters;
 
@@ -33,13 +48,27 @@ typedef struct laconic_parameters {
 #define LACONIC_LOADER_SENSORS(X)
 #endif
 
+/* The rows of bodies and hinges, in a node that has them. */
+/* clang-format off */
+#if LACONIC_NODE_WITH_HINGES
+#define LACONIC_LOADER_HINGES(X) \
+    LACONIC_BODY_FIELDS(X, BODY) LACONIC_WHEEL_BODY_FIELD(X, WHEEL_BODY) LACONIC_BODY_COUNT_FIELD(X, BODY_COUNT) \
+    X(HINGE_COMMAND, 113, HINGE_RATE, hinge_rate_rad_per_s, steering_rate_rad_per_s, REAL, FINITE, NEVER) \
+    X(HINGE_COMMAND, 115, TWIST, twist, steering_twist, REAL, FINITE, NEVER) \
+    LACONIC_HINGE_START_FIELDS(X, HINGE_START)
+#else
+#define LACONIC_LOADER_HINGES(X)
+#endif
+/* clang-format on */
+
 /* Number of fields that the loader receives. */
 #define LACONIC_LOADER_ONE(of, number, ...) LACONIC_ROW_OF(number)(+1)
-#define LACONIC_LOADER_EVERY(X) LACONIC_PARAMETER_FIELDS(X) LACONIC_LOADER_DRIVES(X) LACONIC_LOADER_SENSORS(X)
+#define LACONIC_LOADER_EVERY(X) \
+    LACONIC_PARAMETER_FIELDS(X) LACONIC_LOADER_DRIVES(X) LACONIC_LOADER_SENSORS(X) LACONIC_LOADER_HINGES(X)
 #define LACONIC_LOADER_FIELDS (0 LACONIC_LOADER_EVERY(LACONIC_LOADER_ONE))
 
 /* Bit = item from 1; bit 0 where the field has none. */
-#if LACONIC_MAX_WHEELS < 8 && LACONIC_MAX_SUPPORTS < 8
+#if LACONIC_MAX_WHEELS < 8 && LACONIC_MAX_SUPPORTS < 8 && !LACONIC_NODE_WITH_HINGES
 typedef uint8_t laconic_loader_items;
 #else
 typedef uint32_t laconic_loader_items;

@@ -30,6 +30,12 @@
 #if LACONIC_NODE_WITH_ESTIMATE
 #include "laconic/estimate.h"
 #endif
+#if LACONIC_NODE_WITH_HINGES && (LACONIC_MAX_BODIES < 1 || LACONIC_MAX_BODIES > 9)
+#error "laconic: STEERING numbers nine hinges: set LACONIC_MAX_BODIES to 1 to 9, or LACONIC_NODE_WITH_HINGES to 0"
+#endif
+#if LACONIC_NODE_WITH_HINGES && LACONIC_MAX_WHEELS + LACONIC_MAX_BODIES > 31
+#error "laconic: a loader notes 31 items: lower LACONIC_MAX_WHEELS, or set LACONIC_NODE_WITH_HINGES to 0"
+#endif
 
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
@@ -71,6 +77,30 @@ typedef struct laconic_node_free_run {
     uint32_t worst_lateness_us;
 } laconic_node_free_run;
 
+#if LACONIC_NODE_WITH_HINGES
+/* A vehicle with hinges moves by these. The plant then holds the numbers of wheels and steps and the step's size alone,
+ * which the frames of every vehicle use. */
+typedef struct laconic_node_hinges {
+    bool here;           /* the vehicle has hinges                                                */
+    bool changes;        /* STEERING has come: the next step goes to its numbers                  */
+    uint8_t send;        /* chosen frames: LACONIC_NODE_SEND_VELOCITY …                           */
+    uint8_t angle_group; /* next HINGE_ANGLE group                                                */
+    uint8_t rate_group;  /* next HINGE_RATE group                                                 */
+    laconic_articulated_model model;
+    laconic_articulated_integrator integrator;
+    laconic_articulated_state state;
+    laconic_real twist[3];              /* at the end of the last step                           */
+    laconic_articulated_start start;    /* RESET returns to it, with `first` …                   */
+    laconic_articulated_input first;    /* … commanded                                           */
+    laconic_articulated_input input[2]; /* at the start and the end of the next step; their `base`
+                                            is that of laconic_node.input                         */
+} laconic_node_hinges;
+
+#define LACONIC_NODE_SEND_VELOCITY 1U
+#define LACONIC_NODE_SEND_HINGE_ANGLE 2U
+#define LACONIC_NODE_SEND_HINGE_RATE 4U
+#endif
+
 /* Small members come first: small processors reach them by shorter instructions. */
 typedef struct laconic_node {
     uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
@@ -103,7 +133,7 @@ typedef struct laconic_node {
 #if LACONIC_NODE_WITH_DRIVES
     laconic_drive_plan drive_plan; /* of the vehicle, for START_DRIVES                         */
     laconic_drives drives;
-    uint64_t axes[(LACONIC_MAX_WHEELS * LACONIC_NODE_AXIS_BYTES + 7) / 8]; /* of the protocol */
+    uint64_t axes[(LACONIC_DRIVE_AXES * LACONIC_NODE_AXIS_BYTES + 7) / 8]; /* of the protocol */
 #endif
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensors sensors; /* beside the plant */
@@ -114,6 +144,9 @@ typedef struct laconic_node {
     uint8_t estimate_page; /* next ERROR_ESTIMATE page                                        */
     laconic_estimate estimate;
     laconic_errors estimated; /* what its pages tell */
+#endif
+#if LACONIC_NODE_WITH_HINGES
+    laconic_node_hinges hinges;
 #endif
 } laconic_node;
 

@@ -14,8 +14,9 @@ typedef struct laconic_node_session {
     uint8_t request;            /* of the last HELLO                                                   */
     uint32_t nonce, last_nonce; /* for the next OPEN; of the last accepted OPEN                        */
     uint32_t number, key, run_key;
-    uint32_t count[LACONIC_WIRE_RIG_OFFSETS]; /* of the last right frame; 0: none since OPEN or START       */
-    uint32_t armed, deaf;                     /* motion frames, bit = offset: the last one was right; was refused    */
+    /* of the last right frame, behind those of all nodes that of STEERING; 0: none since OPEN or START               */
+    uint32_t count[LACONIC_WIRE_RIG_OFFSETS + LACONIC_NODE_WITH_HINGES];
+    uint32_t armed, deaf; /* motion frames, bit = offset: the last one was right; was refused    */
 } laconic_node_session;
 
 #endif

@@ -25,7 +25,37 @@ void laconic_library_inspect(const laconic_node *node, laconic_library_view *vie
     *view = seen;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+static void motion_with_hinges(const laconic_node *node, laconic_library_motion *motion) {
+    laconic_articulated_motion now;
+    laconic_articulated_motion_of(&now, &node->hinges.model, &node->hinges.state);
+    const laconic_library_motion seen = {
+        .x_m = (double)now.x_m,
+        .y_m = (double)now.y_m,
+        .heading_rad = (double)now.heading_rad,
+        .velocity_m_per_s = {(double)now.velocity_m_per_s[0], (double)now.velocity_m_per_s[1]},
+        .yaw_rate_rad_per_s = (double)now.yaw_rate_rad_per_s,
+    };
+    *motion = seen;
+}
+
+/* Angle and speed of an axis: a wheel, or behind the last a hinge. */
+static void axis_with_hinges(const laconic_node *node, int32_t axis, laconic_real *angle, laconic_real *speed) {
+    const int32_t hinge = axis - node->hinges.model.wheel_count;
+    laconic_articulated_motion now;
+    laconic_articulated_motion_of(&now, &node->hinges.model, &node->hinges.state);
+    *angle = hinge < 0 ? now.wheel_angle_rad[axis] : now.hinge_angle_rad[hinge];
+    *speed = hinge < 0 ? now.wheel_speed_rad_per_s[axis] : now.hinge_rate_rad_per_s[hinge];
+}
+#endif
+
 void laconic_library_motion_of(const laconic_node *node, laconic_library_motion *motion) {
+#if LACONIC_NODE_WITH_HINGES
+    if (node->hinges.here) {
+        motion_with_hinges(node, motion);
+        return;
+    }
+#endif
     const laconic_model *model = &node->plant.model;
     const laconic_state *state = &node->plant.state;
     laconic_pose pose;
@@ -45,13 +75,23 @@ void laconic_library_motion_of(const laconic_node *node, laconic_library_motion 
 int32_t laconic_library_drive_count(const laconic_node *node) { return node->drives.count; }
 
 bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic_library_drive *view) {
-    laconic_real speed[LACONIC_MAX_WHEELS];
-    laconic_real angle[LACONIC_MAX_WHEELS];
+    laconic_real speed[LACONIC_DRIVE_AXES];
+    laconic_real angle[LACONIC_DRIVE_AXES];
     if (drive < 0 || drive >= node->drives.count) return false;
     const laconic_wheel_drive *it = &node->drives.drive[drive];
     const int32_t wheel = node->drives.wheel[drive];
-    laconic_plant_wheel_speeds(&node->plant, speed);
-    laconic_plant_wheel_angles(&node->plant, angle);
+    laconic_real axle_torque = wheel < LACONIC_MAX_WHEELS ? node->input[0].axle_torque_Nm[wheel] : 0;
+#if LACONIC_NODE_WITH_HINGES
+    const int32_t hinge = wheel - node->hinges.model.wheel_count;
+    if (node->hinges.here) {
+        axis_with_hinges(node, wheel, &angle[wheel], &speed[wheel]);
+        if (hinge >= 0) axle_torque = node->hinges.input[0].hinge_torque_Nm[hinge];
+    } else
+#endif
+    {
+        laconic_plant_wheel_speeds(&node->plant, speed);
+        laconic_plant_wheel_angles(&node->plant, angle);
+    }
     const laconic_library_drive seen = {
         .wheel = wheel,
         .node_id = it->settings.node_id,
@@ -69,7 +109,7 @@ bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic
         .current_A = (double)it->current_A,
         .integral_A = (double)it->integral_A,
         .torque_Nm = (double)it->torque_Nm,
-        .axle_torque_Nm = (double)node->input[0].axle_torque_Nm[wheel],
+        .axle_torque_Nm = (double)axle_torque,
         .wheel_speed_rad_per_s = (double)speed[wheel],
         .wheel_angle_rad = (double)angle[wheel],
     };

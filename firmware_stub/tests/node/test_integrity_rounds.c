@@ -21,10 +21,17 @@ static void test_a_round_over_the_model_lasts_its_time(void) {
 
 /* How many slices a round has: no slice is of two parts. */
 static uint32_t slices_of_the_model(void) {
-    const size_t bytes[] = {
-        sizeof on.node.start,           sizeof on.node.plant.vehicle,    sizeof on.node.plant.model,
-        sizeof on.node.drive_plan,      sizeof on.node.plant.integrator, sizeof on.node.plant.friction,
-        sizeof on.node.sensors.settings};
+    const size_t bytes[] = {sizeof on.node.start,
+                            sizeof on.node.plant.vehicle,
+                            sizeof on.node.plant.model,
+                            sizeof on.node.drive_plan,
+                            sizeof on.node.plant.integrator,
+                            sizeof on.node.plant.friction,
+                            sizeof on.node.sensors.settings,
+                            sizeof on.node.hinges.model,
+                            sizeof on.node.hinges.integrator,
+                            sizeof on.node.hinges.start,
+                            sizeof on.node.hinges.first};
     uint32_t slices = 0;
     for (size_t k = 0; k < sizeof bytes / sizeof bytes[0]; k++) {
         slices += (uint32_t)(bytes[k] / LACONIC_INTEGRITY_SLICE);

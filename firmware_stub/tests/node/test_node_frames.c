@@ -140,7 +140,7 @@ static void every_kind_of_frame_has_a_count_of_its_own(void) {
         send_control(LACONIC_WIRE_COMMAND_BEGIN);
         fetch_counted(counts, &seen);
     }
-    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_OFFSETS) - BIT_OF(LACONIC_WIRE_NODE_FIRST), seen);
+    TEST_ASSERT_EQUAL_HEX32(BIT_OF(LACONIC_WIRE_STEERING) - BIT_OF(LACONIC_WIRE_NODE_FIRST), seen); /* no hinges */
 }
 
 /* ---------------------------------------------------------------------------------------- telling -- */

@@ -223,6 +223,17 @@ static void frames_of_the_node_and_requests_for_data_need_no_code(void) {
     TEST_ASSERT_EQUAL_UINT64((uint64_t)7 << 32, rig.freshness);
 }
 
+/* Its identifier lies among the node's, yet it moves the vehicle. */
+static void a_steering_frame_waits_for_its_code(void) {
+    const laconic_frame steering = frame_of(LACONIC_WIRE_STEERING, 1);
+    laconic_frame code;
+    begin(7);
+    TEST_ASSERT_FALSE(laconic_gate_take(&gate, &steering, &out));
+    begin(7);
+    TEST_ASSERT_TRUE(laconic_gate_seal(&rig, &steering, &code));
+    TEST_ASSERT_TRUE(passes(&steering, &code));
+}
+
 static void frames_of_others_get_no_code(void) {
     laconic_frame code, drive = frame_of(LACONIC_WIRE_CONTROL, 0), extended = drive;
     begin(7);
@@ -370,6 +381,7 @@ int main(void) {
     RUN_TEST(what_is_wrong_is_counted_by_name);
     RUN_TEST(a_recording_of_an_earlier_power_up_does_not_pass);
     RUN_TEST(frames_of_the_node_and_requests_for_data_need_no_code);
+    RUN_TEST(a_steering_frame_waits_for_its_code);
     RUN_TEST(frames_of_others_get_no_code);
     RUN_TEST(a_code_of_another_length_ends_the_wait);
     RUN_TEST(only_a_new_challenge_begins_a_new_freshness);

@@ -9,7 +9,7 @@
 #include <string.h>
 
 static laconic_node node;
-static uint32_t sent[LACONIC_WIRE_RIG_OFFSETS]; /* counts since OPEN or START */
+static uint32_t sent[LACONIC_WIRE_OFFSETS]; /* counts since OPEN or START */
 static uint32_t bench_key, bench_run_key;
 static uint32_t now_us;
 
@@ -51,7 +51,7 @@ static inline uint8_t bench_control(uint8_t command, uint16_t rate, uint16_t wat
         command == LACONIC_WIRE_COMMAND_START_LOCKSTEP || command == LACONIC_WIRE_COMMAND_START_FREE_RUN;
     if (starts && status == 0) {
         bench_run_key = laconic_run_key(bench_key, sent[LACONIC_WIRE_CONTROL]);
-        for (uint8_t k = 0; k < LACONIC_WIRE_RIG_OFFSETS; k++)
+        for (uint8_t k = 0; k < LACONIC_WIRE_OFFSETS; k++)
             if (laconic_wire[k].key == LACONIC_WIRE_KEY_RUN) sent[k] = 0;
     }
     return status;

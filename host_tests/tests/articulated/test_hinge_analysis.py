@@ -14,6 +14,7 @@ from hinge_scenes import CASTER, HINGED, scene_with, tables_of, two_wheels
 
 import laconic
 from laconic.cli.main import run
+from laconic.core.articulated import ArticulatedPlant
 from laconic.errors import BadInput
 from laconic.tools.analyse.hinged import HingedStudy, study_hinges
 
@@ -145,7 +146,8 @@ def test_the_command_prints_text_and_numbers_and_writes_both(tmp_path: Path, cap
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
-    (["tugger_train", "--only", "steady"], "--only"), (["tugger_train", "--at", "1"], "--at"),
+    (["tugger_train", "--only", "steady"], "--only: has no meaning beside a scene with hinges; leave it out"),
+    (["tugger_train", "--at", "1"], "--at: has no meaning beside a scene with hinges; leave it out"),
     (["s1", "--speed", "1"], "for vehicles with hinges"),
     (["tugger_train", "--steering", "fron", "0.1"], "did you mean front?"),
     (["tugger_train", "--steering", "first", "0.1"], "does not steer the carriage"),
@@ -165,6 +167,31 @@ def test_vehicles_that_have_no_such_motions_are_refused_with_the_remedy() -> Non
     held["vehicle"]["wheel"][0]["locked"] = True
     with pytest.raises(BadInput, match=r"wheel\[1\].*locked"):
         study_hinges(scene_with(held, initial={}))
+
+
+@pytest.mark.parametrize("kg", [0.0, 1.0])
+@pytest.mark.parametrize("trail_m", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("turned_deg", [0.0, 40.0])
+def test_a_short_trail_grows_by_its_law_and_leaves_the_carriage_its_neutral_motions(
+        trail_m: float, kg: float, turned_deg: float) -> None:
+    caster = {**CASTER, "trail_m": trail_m, "start_angle_deg": turned_deg} | ({"mass_kg": kg} if kg else {})
+    found = study_hinges(scene_with(two_wheels(caster=[caster])), speeds_m_per_s=(1.0,))
+    assert found.failures == []
+    assert sorted(z.real for z in found.straight[0].eigenvalues_per_s) == pytest.approx([-1.0 / trail_m, 0.0, 0.0])
+
+
+def test_a_motion_that_nothing_holds_is_refused_by_what_keeps_no_angle(monkeypatch: pytest.MonkeyPatch) -> None:
+    rates = ArticulatedPlant.rates
+
+    def swinging(plant: ArticulatedPlant, inputs: Any) -> Any:
+        twist, twist_rate = rates(plant, inputs)
+        return twist, twist_rate + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1e20]])
+
+    monkeypatch.setattr(ArticulatedPlant, "rates", swinging)
+    with pytest.raises(BadInput) as why:
+        study_hinges(scene_with(two_wheels(caster=[{**CASTER, "trail_m": 1e-4}])), speeds_m_per_s=(1.0,))
+    assert "vehicle.caster[1] (caster_1), whose wheels lie 0.0001 m from it, keeps no angle" in str(why.value)
+    assert "longer trail" in str(why.value) and "--speed" not in str(why.value)
 
 
 def test_a_slope_is_left_out_and_the_words_say_so() -> None:
@@ -215,3 +242,26 @@ def test_an_arm_on_a_spring_swings_as_fast_as_its_spring_and_inertia_say() -> No
     found = study_hinges(scene_with(tables), speeds_m_per_s=(0.5,))
     swing = math.sqrt(3.0 / (0.1 + 1.0 * 0.2**2))
     assert found.straight[0].eigenvalues_per_s[0] == pytest.approx(complex(0.0, swing), abs=1e-4)
+
+
+@pytest.mark.parametrize(("name", "curvature"), [("f1tenth", 0.5), ("tricycle_agv", 0.3), ("tugger_train", 0.2),
+                                                 ("mir_like", 0.4), ("frc_swerve_mk4i", 0.5), ("pr2_base", 1.0)])
+def test_the_voltages_of_a_turn_hold_its_speed_for_ten_seconds(name: str, curvature: float) -> None:
+    scene = laconic.read_scene(name)
+    turn = study_hinges(scene, curvatures_per_m=[curvature], speeds_m_per_s=[]).turns[0]
+    assert turn.confirmed and turn.held_by_V
+    vehicle = laconic.ArticulatedVehicle.of(scene)
+    tree = study_hinges(scene, speeds_m_per_s=[]).tree
+    velocity, omega = tree.twist(curvature)
+    there = velocity + 1j * omega * tree.centre
+    commands = {"steering_twist": [velocity.real, velocity.imag, omega]} if vehicle.is_coordinated else {}
+    plant = vehicle.plant(velocity_m_per_s=(there.real, there.imag), yaw_rate_rad_per_s=omega, step_s=0.01,
+                          hinge_angle_rad=[each.angle_rad for each in turn.circles], inputs=commands)
+    before = plant.motion()
+    plant.run({**commands, **turn.held_by_V}, steps=1000)
+    after = plant.motion()
+    assert after.velocity_m_per_s == pytest.approx(before.velocity_m_per_s, abs=1e-9)
+    assert after.hinge_angle_rad == pytest.approx(before.hinge_angle_rad, abs=1e-9)
+    assert abs(after.heading_rad - 10.0 * omega) < 1e-9
+    assert f"voltage_V[{1 if 'voltage_V[1]' in turn.held_by_V else 3}] = " in " ".join(
+        study_hinges(scene, curvatures_per_m=[curvature], speeds_m_per_s=[]).words["turns"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,6 +17,8 @@ import laconic
 from laconic.base.paths import SCENE_DIR, SOURCE_DIR
 from laconic.cli.main import run
 from laconic.errors import BadInput
+from laconic.fmu.hinges import left_out
+from laconic.robot.bags.messages import store
 from laconic.scene.scene_text import lines_of
 
 REFERENCE = Path(__file__).parents[1] / "data" / "articulated_reference.json"
@@ -135,13 +138,11 @@ def test_a_reference_that_cannot_be_read_is_one_line(change, words: str, tmp_pat
     assert status == 2 and words in why and why.count("\n") == 1
 
 
-CAN = "--interface virtual --channel none"
 ELSEWHERE = {  # every other command that takes a scene, with what it needs in addition
-    "derive": "SCENE", "trim": "SCENE", "rig": f"SCENE {CAN} --lockstep", "play": f"SCENE {CAN} --drives canopen",
     "replay": "LOG SCENE", "identify": "LOG --scene SCENE -o FOLDER/f.toml",
     "optimise": "SCENE --free vehicle.mass_kg=1:2 --goal min:speed",
     "sweep": "SCENE --vary vehicle.mass_kg=1:2:3 -o FOLDER/sweep", "report": "--scene SCENE", "demo": "SCENE",
-    "ros2": "SCENE", "audit": "LOG SCENE", "logs": "LOG --scene SCENE"}
+    "audit": "LOG SCENE", "logs": "LOG --scene SCENE"}
 
 
 def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
@@ -149,7 +150,8 @@ def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse"} and takes - with_hinges == {*ELSEWHERE}
+    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "trim", "ros2", "rig", "play"}
+    assert takes - with_hinges == {*ELSEWHERE}
 
 
 @pytest.mark.parametrize("command", ELSEWHERE)
@@ -164,15 +166,87 @@ def test_a_command_that_knows_no_hinges_refuses_them_in_one_line(command: str, n
     status, text, why = told([command, *arguments], capsys)
     assert status == 2 and text == "" and why.count("\n") == 1
     assert f"laconic {command} {DOES_NOT}" in why and "use laconic simulate" in why and str(scene) in why
+    assert "[[vehicle.support]]" in why and "laconic import --no-hinges" in why
 
 
-@pytest.mark.parametrize("option", [["--errors", "-o", "x.csv"], ["--enclose"], ["--bag", "x.mcap"]])
-def test_options_of_simulate_that_know_no_hinges_are_refused(option: list[str], tmp_path: Path,
-                                                            monkeypatch: pytest.MonkeyPatch,
-                                                            capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.chdir(tmp_path)
-    status, _, why = told(["simulate", "f1tenth", *option], capsys)
-    assert status == 2 and f"{option[0]} {DOES_NOT}" in why
+def test_simulate_refuses_to_enclose_hinges_and_names_the_estimate(capsys: pytest.CaptureFixture[str]) -> None:
+    status, _, why = told(["simulate", "f1tenth", "--enclose"], capsys)
+    assert status == 2 and f"--enclose {DOES_NOT}" in why and "--errors" in why
+
+
+OF_KINDS = {"velocity_m_per_s": "velocity_body_m_per_s", "yaw_rate_rad_per_s": "yaw_rate_rad_per_s",
+            "hinge_rate_rad_per_s": "hinge_rate_rad_per_s", "heading_rad": "heading_rad",
+            "hinge_angle_rad": "hinge_angle_rad", "wheel_angle_rad": "wheel_angle_rad"}
+
+
+@pytest.mark.parametrize(("name", "step_s", "method"), [
+    ("mir_like", 0.01, "auto"), ("mir_like", 0.025, "auto"), ("tugger_train", 0.02, "moebius-4"),
+    ("wheelchair", 0.01, "circle"), ("tricycle_agv", 0.02, "auto")])
+def test_the_estimated_error_is_above_the_true_one_and_near_it(name: str, step_s: float, method: str) -> None:
+    """Inputs that are held over steps of each size, so that a finer run is the same motion."""
+    scene = laconic.read_scene(name).with_run(duration_s=2.0, step_s=step_s, method=method)
+    held_inputs = tuple(replace(each, kind="steps", t_s=(0.0,), value=(4.0 + k,)) for k, each in
+                        enumerate(each for each in scene.inputs if each.signal.startswith("voltage_V")))
+    scene = replace(scene, inputs=held_inputs, outputs=replace(scene.outputs, every_s=None))
+    kept = tuple(OF_KINDS.values())
+    run_ = laconic.simulate(scene, kept, estimated=True)
+    fine = laconic.simulate(scene.with_run(step_s=step_s / 20, method="auto"), kept)
+    every = 20 if len(fine.time_s) > len(run_.time_s) else 1
+    assert not run_.errors.unknown and run_.errors.largest.place_m > 1e-12
+    for kind, signal in OF_KINDS.items():
+        off = np.abs(run_.columns_of(signal) - fine.columns_of(signal)[::every]).max(axis=1)
+        estimated = run_.error_columns[f"estimated_error_{kind}"]
+        rounding = 1e-11 * max(1.0, float(np.abs(run_.columns_of(signal)).max()))
+        assert np.all(off <= 1.01 * estimated + rounding), kind
+        assert off.max() >= estimated.max() / 30 - rounding, kind
+
+
+def test_simulate_writes_columns_of_estimated_errors_and_prints_them(tmp_path: Path,
+                                                                     capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "run.csv"
+    status, text, _ = told(["simulate", "f1tenth", "--errors", "-o", str(out)], capsys)
+    assert status == 0 and "estimated error: velocity" in text and "largest of the rows" in text
+    header, *rows = csv.reader(out.open(encoding="utf-8"))
+    at = header.index("estimated_error_hinge_angle_rad")
+    assert header[-7:] == [f"estimated_error_{kind}" for kind in (
+        "velocity_m_per_s", "yaw_rate_rad_per_s", "hinge_rate_rad_per_s", "place_m", "heading_rad", "hinge_angle_rad",
+        "wheel_angle_rad")]
+    assert all(0.0 <= float(row[at]) < 1e-9 for row in rows)
+    status, text, _ = told(["simulate", "f1tenth", "--errors", "-o", str(out), "--json"], capsys)
+    assert json.loads(text)["estimated_error"]["now"]["place_m"] < 1e-8
+
+
+@pytest.mark.parametrize(("tolerance", "longest"), [(1e-4, 0.5), (1e-7, 0.02)])
+def test_auto_finds_a_step_that_keeps_the_tolerance_with_hinges(tolerance: float, longest: float) -> None:
+    tables = two_wheels(caster=[{**CASTER, "start_angle_rad": 1.0}])
+    tables["run"] = {"duration_s": 0.5, "step_s": "auto", "tolerance": tolerance}
+    scene = scene_with(tables)
+    assert 1e-4 <= scene.run.step_s <= longest and scene.run.tolerance == tolerance
+    end = laconic.simulate(scene).columns["hinge_angle_rad[caster_1]"][-1]
+    assert abs(end - 2.0 * np.arctan(np.tan(0.5) * np.exp(-0.8 * 0.5 / 0.05))) <= tolerance
+    tables["run"]["tolerance"] = 1e-30
+    with pytest.raises(BadInput, match=r"run.tolerance: 1e-30 is kept by no step"):
+        scene_with(tables)
+
+
+def test_a_bag_of_a_run_with_hinges_has_their_joints_and_odometry_of_the_carriages_wheels(tmp_path: Path) -> None:
+    rosbags = pytest.importorskip("rosbags.highlevel")
+    for name, has_odometry in (("f1tenth", True), ("frc_swerve_mk4i", False)):
+        folder = tmp_path / name
+        assert run(["simulate", name, "--bag", str(folder)]) == 0
+        scene = laconic.read_scene(name)
+        end = laconic.simulate(scene, ["hinge_angle_rad", "hinge_rate_rad_per_s", "origin_x_m"])
+        with rosbags.AnyReader([folder], default_typestore=store()) as bag:
+            topics = {each.topic for each in bag.connections}
+            last = {connection.topic: bag.deserialize(raw, connection.msgtype)
+                    for connection, _, raw in bag.messages()}
+        assert ("/odom" in topics) == has_odometry
+        joints, count = last["/joint_states"], scene.wheel_count
+        assert list(joints.name[count:]) == [f"{hinge.name}_joint" for hinge in scene.hinges]
+        assert np.array_equal(joints.position[count:], end.columns_of("hinge_angle_rad")[-1])
+        assert np.array_equal(joints.velocity[count:], end.columns_of("hinge_rate_rad_per_s")[-1])
+        if has_odometry:
+            assert last["/odom"].pose.pose.position.x == pytest.approx(end.columns["origin_x_m"][-1], abs=1e-3)
 
 
 def test_verify_of_a_scene_and_enclosures_refuse_hinges(capsys: pytest.CaptureFixture[str]) -> None:
@@ -186,15 +260,14 @@ def test_functions_of_the_package_that_know_no_hinges_refuse_them(name: str) -> 
     from laconic.scene.ground import check_ideal_ground
     from laconic.scene.standing import standing_of
     from laconic.tools.enclosure.readings import check_enclosable
-    from laconic.tools.trim.scene_files import trimmed
     from laconic.tools.verify.reference import Reference
 
     scene = laconic.read_scene(name)
     calls = (lambda: laconic.Vehicle.of(scene), lambda: laconic.Vehicle(scene.vehicle), lambda: laconic.analyse(scene),
              lambda: scene.plant(scene.core()),
              lambda: scene.model(scene.core()), lambda: scene.c_start(scene.core()), lambda: standing_of(scene),
-             lambda: Reference(scene.vehicle), lambda: trimmed(scene, "single"), lambda: check_enclosable(scene),
-             lambda: check_ideal_ground(scene, "derive"), lambda: laconic.simulate(scene, estimated=True))
+             lambda: Reference(scene.vehicle), lambda: check_enclosable(scene),
+             lambda: check_ideal_ground(scene, "derive"))
     for call in calls:
         with pytest.raises(BadInput, match="hinges"):
             call()
@@ -208,6 +281,52 @@ def test_limits_that_held_a_command_back_are_told(tmp_path: Path, capsys: pytest
     status, _, warning = told(["simulate", str(path)], capsys)
     assert status == 0 and "front_left: the limit of its angle held the command back" in warning
     assert "front_left: the limit of its rate held the command back for" in warning
+
+
+def test_a_trailer_that_folds_is_an_event_of_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "folds.toml"
+    scene.write_text("""[vehicle]
+mass_kg = 20.0
+yaw_inertia_kgm2 = 0.8
+wheel_radius_m = 0.08
+wheel_inertia_kgm2 = 0.0
+[[vehicle.wheel]]
+kind = "fixed"
+x_m = 0.0
+y_m = 0.2
+axle_deg = -90.0
+[[vehicle.trailer]]
+name = "cart"
+hitch_x_m = -0.3
+length_m = 0.8
+track_m = 0.4
+radius_m = 0.1
+start_angle_deg = 20.0
+[initial]
+velocity_body_m_per_s = [-0.8, 0.0]
+[run]
+duration_s = 5.0
+step_s = 0.01
+""", encoding="utf-8")
+    status, _, why = told(["simulate", str(scene)], capsys)
+    assert status == 0 and "cart folds: its hinge angle is beyond 90° from t = " in why and "stop_low_deg" in why
+    status, text, _ = told(["simulate", str(scene), "--json"], capsys)
+    (fold,) = json.loads(text)["folded"]
+    assert fold["hinge"] == "cart" and 1.7 < fold["first_s"] < 1.8 and fold["most_rad"] > 3.0
+    ahead = scene.read_text(encoding="utf-8").replace("[-0.8, 0.0]", "[0.8, 0.0]")
+    scene.write_text(ahead, encoding="utf-8")
+    assert "folds" not in told(["simulate", str(scene)], capsys)[2]
+
+
+def test_commands_that_the_fmu_of_hinges_does_not_take_are_named_with_those_that_it_takes() -> None:
+    assert "the FMU has no inputs steering_curvature_per_m, which the scene steers by; give steering_twist" in left_out(
+        laconic.build_scene(tables_of("f1tenth", input=held(steering_curvature_per_m=0.2))))
+    tables = two_wheels()
+    tables["vehicle"]["wheel"].append({"kind": "fixed", "x_m": 0.5, "y_m": 0.0, "steered": "prescribed",
+                                       "name": "front", "driven": False, "rate_limit_rad_per_s": 1.0})
+    told_of = left_out(laconic.build_scene(tables | {"input": held(steering_angle_rad__front=0.2)}))
+    assert "the FMU has no limits" in told_of and "no inputs steering_angle_rad[front]" in told_of
+    assert "give steering_rate_rad_per_s of prescribed hinges" in told_of
 
 
 def test_a_run_that_is_refused_on_the_way_keeps_what_was_before(tmp_path: Path) -> None:

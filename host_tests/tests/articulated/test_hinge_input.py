@@ -73,8 +73,7 @@ def fails(tables: dict[str, Any], *words: str) -> None:
         "resistance_ohm": 1.0, "torque_constant_Nm_per_A": 0.1, "back_emf_Vs_per_rad": 0.1, "gear_ratio": 1.0}),
      ("vehicle.drive", "take it out")),
     (with_steered() | {"sensors": {"imu": {}}}, ("sensors", "take the table out")),
-    (with_steered() | {"base": {}}, ("base", "take the table out")),
-    (with_steered() | {"run": {"duration_s": 1.0, "step_s": "auto", "tolerance": 1e-6}}, ("run.step_s", "give a step")),
+    (with_steered() | {"base": {"track_m": 1.0}}, ("base.track_m", "is no known key here")),
     (with_steered() | {"outputs": {"signals": ["hinge_angle_rad[rear]"]}}, ("outputs.signals", "hinge_angle_rad")),
     (with_steered() | {"outputs": {"signals": ["nu_rad_per_s"]}}, ("outputs.signals", "there is no signal")),
     (with_steered() | {"outputs": {"signals": ["no_slip_margin_N"]}}, ("friction_coefficient",)),
@@ -87,6 +86,25 @@ def fails(tables: dict[str, Any], *words: str) -> None:
                                                              steering_rate_rad_per_s__wheel_3=1.0)},
      ("steering_angle_rad[wheel_3]", "besides")),
     (with_steered() | {"input": held(voltage_V__4=1.0)}, ("voltage_V[4]", "3 wheels")),
+    (tables_of("f1tenth", input=held(steering_angle_rad__front_left=0.1)),
+     ("steering_angle_rad[front_left]", "is coordinated", "steered together", "steering_curvature_per_m")),
+    (tables_of("f1tenth", input=held(steering_rate_rad_per_s__front_left=0.1)), ("is coordinated", "steering_twist")),
+    (tables_of("f1tenth", input=held(steering_angle_rad__fron_left=0.1)), ("there is steering_angle_rad",)),
+    ({**two_wheels(), "vehicle": {**two_wheels()["vehicle"], "wheel": [
+        *two_wheels()["vehicle"]["wheel"], {"kind": "fixed", "x_m": 0.5, "y_m": 0.0, "stered": "prescribed"}]}},
+     ("wheel[3].stered", "did you mean steered?")),
+    ({**two_wheels(), "vehicle": {**two_wheels()["vehicle"], "wheel": [
+        *two_wheels()["vehicle"]["wheel"], {"kind": "fixed", "x_m": 0.5, "y_m": 0.0, "name": "front", "steerd": "motor",
+                                            "rate_limit_rad_per_s": 2.0}]}},
+     ("wheel[3].steerd", "did you mean steered?")),
+    (two_wheels(caster=[{**CASTER, "com_x_m": -0.02}]), ("caster[1].com_x_m", "without mass", "give mass_kg")),
+    (two_wheels(caster=[{**CASTER, "start_rate_rad_per_s": 2.0}]),
+     ("caster[1].start_rate_rad_per_s: 2 has no effect", "set its rate, here 0 rad/s")),
+    (two_wheels(trailer=[{**TRAILER, "start_angle_deg": 30.0, "start_rate_rad_per_s": -3.0}]),
+     ("trailer[1].start_rate_rad_per_s", "here -0.5 rad/s")),
+    (two_wheels(body=[{**BODY, "parent": "arm"}]), ("body[1].parent", "the body itself")),
+    (two_wheels(trailer=[{**TRAILER, "name": "cart", "parent": "carts"}]),
+     ("trailer[1].parent", "there is no body 'carts'; known are carriage")),
     (two_wheels() | {"input": held(hinge_torque_Nm__arm=1.0)}, ("there is no signal", "hinge_torque_Nm"))])
 def test_what_contradicts_is_one_line_with_field_and_remedy(tables: dict[str, Any], words: tuple[str, ...]) -> None:
     fails(tables, *words)

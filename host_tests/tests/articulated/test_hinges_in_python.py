@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -221,3 +222,48 @@ def test_each_scene_gives_its_vehicle_in_both_precisions(name: str) -> None:
         assert made.wheel_count == scene.wheel_count and made.names == tuple(hinge.name for hinge in scene.hinges)
     with pytest.raises(BadInput, match=r"laconic\.Vehicle"):
         ArticulatedVehicle.of(laconic.read_scene("s1"))
+
+
+def test_a_rigid_vehicle_of_a_scene_with_hinges_names_the_one_that_takes_them() -> None:
+    with pytest.raises(BadInput, match=r"caster\[1\]: laconic\.Vehicle does not .* laconic\.ArticulatedVehicle\.of"):
+        laconic.Vehicle.of(laconic.read_scene("mir_like"))
+
+
+def test_variants_that_the_fmu_of_hinges_lacks_are_refused_by_the_name_of_the_option(tmp_path: Path) -> None:
+    for option in ("derivatives", "estimate"):
+        with pytest.raises(BadInput, match=f"^--{option}: the FMU of a vehicle with hinges"):
+            laconic.make_fmu(laconic.read_scene("mir_like"), tmp_path / "f.fmu", version=3, **{option: True})
+
+
+@pytest.mark.parametrize(("scene", "inputs", "words"), [
+    ("mir_like", {"voltage_V[3]": 1.0}, r"voltage_V\[3\]: would do nothing, wheel 3 has no motor; .*axle_torque_Nm"),
+    ("f1tenth", {"hinge_torque_Nm[front_left]": 1.0}, r"hinge_torque_Nm\[front_left\]: would do nothing"),
+    ("f1tenth", {"hinge_voltage_V[front_left]": 1.0}, r"hinge_voltage_V\[front_left\]: .* as it needs a motor"),
+    ("f1tenth", {"steering_rate_rad_per_s[front_left]": 1.0}, r"steering_rate_rad_per_s\[front_left\]: .*prescribed")])
+def test_an_input_that_would_do_nothing_is_refused_as_in_a_scene(scene: str, inputs: dict[str, float], words: str
+                                                                 ) -> None:
+    vehicle = laconic.ArticulatedVehicle.of(laconic.read_scene(scene))
+    plant = vehicle.plant(inputs={"steering_twist": [1, 0, 0]} if vehicle.is_coordinated else {})
+    with pytest.raises(BadInput, match=words):
+        plant.run(inputs)
+
+
+def test_a_voltage_for_a_rigid_wheel_without_a_motor_is_refused() -> None:
+    vehicle = {**{k: v for k, v in ROBOT.items() if k != "body"}, "wheel": [
+        {**FIXED, "x_m": 0.0, "y_m": y, "driven": y > 0} for y in (0.2, -0.2)]}
+    plant = laconic.Vehicle(vehicle).plant(step_s=0.01)
+    plant.run({"voltage_V": [1.0, 0.0]})
+    with pytest.raises(BadInput, match=r"voltage_V\[2\]: would do nothing, wheel 2 has no motor"):
+        plant.run({"voltage_V": [1.0, 1.0]})
+
+
+def test_a_number_that_is_not_finite_is_named_by_its_signal() -> None:
+    vehicle = laconic.ArticulatedVehicle.of(laconic.read_scene("frc_swerve_mk4i"))
+    plant = vehicle.plant(inputs={"steering_twist": [1.0, 0.0, 0.0]})
+    row = vehicle.input_row({"steering_twist": [1.0, 0.0, 0.0]})
+    row[vehicle.slot("steering_twist[2]")] = math.nan
+    for call in (lambda: plant.run(row), lambda: plant.follow(np.array([[row, row]]))):
+        with pytest.raises(Refused, match=r"^steering_twist\[2\]: NaN"):
+            call()
+    with pytest.raises(BadInput, match=r"^steering_twist\[2\]: nan is not finite"):
+        plant.run({"steering_twist[2]": math.nan})

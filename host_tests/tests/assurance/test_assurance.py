@@ -101,6 +101,7 @@ def test_what_is_no_refusal_by_one_line_is_found(error: Exception, said: str, tm
     assert said in files.spoil(reader, 1, common.Clock(9.0), 3)[2]
 
 
+@pytest.mark.nightly
 @needs("gcc")
 def test_no_flipped_bit_of_a_node_with_all_checks_changes_its_motion_unnoticed(
         capsys: pytest.CaptureFixture[str]) -> None:
@@ -108,6 +109,7 @@ def test_no_flipped_bit_of_a_node_with_all_checks_changes_its_motion_unnoticed(
     assert "double, checks all: 400 of" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 @needs("gcc")
 def test_lost_power_moves_nothing_unasked() -> None:
     assert faults.session("power", ("single",))
@@ -121,11 +123,13 @@ def test_misra_has_no_violation_without_a_deviation_and_finds_one(tmp_path: Path
     assert any("misra-c2012-21.6" in line for line in misra.findings([tmp_path / "wrong.c"], []))
 
 
+@pytest.mark.nightly
 @needs("clang-tidy")
 def test_clang_tidy_finds_nothing() -> None:
     assert tidy.run(argparse.Namespace(only=["firmware_stub/wire/crc.c"]))
 
 
+@pytest.mark.nightly
 @needs("frama-c")
 def test_the_analyser_excludes_undefined_behaviour_of_an_entry_and_finds_it_in_another(tmp_path: Path) -> None:
     crc = next((common.ROOT / "firmware_stub").rglob("crc.c"))
@@ -162,6 +166,7 @@ def test_a_wrong_sign_in_the_50_digits_lies_outside_of_the_enclosure(monkeypatch
         population.truth_of(vehicle, vehicle.plant(load("double"), "auto", 0.001).nu)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("case", [case for case in drift.CASES if case.nu[2]], ids=lambda case: case.name)
 def test_the_closed_form_is_the_motion_that_collocation_gives(case: drift.Case) -> None:
     with drift.digits():
@@ -175,6 +180,7 @@ def test_the_closed_form_is_the_motion_that_collocation_gives(case: drift.Case) 
         assert max(abs(p - q) for p, q in zip(nu, truth.nu, strict=True)) < mpf("1e-22")
 
 
+@pytest.mark.nightly
 def test_heading_and_place_do_not_drift_and_a_millionth_too_slow_is_found() -> None:
     one = drift.Run("auto", "double")
     one.run(20_000)
@@ -185,6 +191,7 @@ def test_heading_and_place_do_not_drift_and_a_millionth_too_slow_is_found() -> N
     assert drift.drifted(spin | {"heading_relative": 1e-6}, "double")
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["batch", "derivatives", "friction", "rig", "soft_double"])
 def test_a_long_run_takes_its_least_piece_and_finds_nothing(name: str) -> None:
     assert name in RUNS and part("long", name, "--minutes", "0") == 0

@@ -242,12 +242,6 @@ def test_a_locked_wheel_does_not_count_in_the_odometry() -> None:
                                                                               seen.y_m - start.y_m), abs=1e-4)
 
 
-@pytest.mark.parametrize("name", sorted({*laconic.scene_names()} - {*rigid_scene_names()}))
-def test_a_vehicle_with_hinges_is_refused_in_one_line(name: str) -> None:
-    with pytest.raises(BadInput, match="does not take vehicles with hinges yet"):
-        Base(read_scene(name))
-
-
 @pytest.mark.parametrize("name", rigid_scene_names())
 def test_every_scene_without_hinges_drives(name: str) -> None:
     base = Base(read_scene(name))

@@ -20,7 +20,8 @@ import laconic
 from laconic.errors import BadInput
 from laconic.ros2.maps import Map
 from laconic.ros2.messages import new, type_hash
-from laconic.ros2.wire import LATCHED, USUAL, Participant, polled
+from laconic.ros2.names import LATCHED, USUAL, polled
+from laconic.ros2.wire import Participant
 from laconic.scene import read_scene
 from ros2_support import DOMAIN, announced, last, rig_of
 
@@ -172,8 +173,9 @@ def test_the_watchdog_is_the_parameter_that_can_be_set() -> None:
         assert not whole.successful and rig.session.robots[0].watchdog_s == 0.2
 
 
-def test_reset_and_set_pose() -> None:
-    with rig_of() as rig:
+@pytest.mark.parametrize("services_for", [("cyclonedds",), ("cyclonedds", "fastrtps")])
+def test_reset_and_set_pose(services_for: tuple[str, ...]) -> None:
+    with rig_of(services_for=services_for) as rig:
         rig.drive(50, 0.2)
         pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
         pose.pose.pose.position.x, pose.pose.pose.position.y = 2.0, -1.0
@@ -243,6 +245,18 @@ def test_the_scan_shows_the_walls_of_the_map(tmp_path: Path) -> None:
               for number, distance in enumerate(scan.ranges)}
         for degrees, distance in ((0, 0.95), (90, 2.45), (-90, 1.45), (-180, 0.95)):
             assert at[degrees] == pytest.approx(distance, abs=0.06)
+
+
+@pytest.mark.parametrize("place, yaw", [(math.nan, 1.0), (1e300, 1.0), (0.0, 1e300), (0.0, math.inf), (0.0, 0.0)])
+def test_a_pose_that_cannot_be_is_told_and_ignored(place: float, yaw: float) -> None:
+    with rig_of(is_loopback=True) as rig:
+        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
+        pose.pose.pose.position.x, pose.pose.pose.orientation.z, pose.pose.pose.orientation.w = place, yaw, 0.0
+        rig.node.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped").write(pose)
+        rig.turn(2)
+        assert rig.lines == ["/laconic: initialpose has a pose that is infinite, NaN, beyond 1e+06 or without a yaw, "
+                             "and is ignored"]
+        assert rig.session.base.look()[0].x_m == 0.0
 
 
 def test_outside_the_map_a_scan_hits_nothing(tmp_path: Path) -> None:

@@ -1,9 +1,14 @@
-"""Robots on the wire, heard and driven by a peer in the same process, in virtual time."""
+"""Robots on the wire, heard and driven by a peer in the same process, in virtual time; then the command itself."""
 
 from __future__ import annotations
 
+import json
 import math
+import os
 import re
+import signal
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +19,13 @@ from cyclonedds.qos import Policy
 
 import laconic
 import made_up_robots
+from laconic.base.extras import extra_of
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.ros2.messages import new, type_hash
+from laconic.ros2.names import LATCHED, Quality, check_name, polled, ros_type
+from laconic.ros2.packets import HERE
 from laconic.ros2.session import Ros2Options, Session, write_record
-from laconic.ros2.wire import LATCHED, Quality, check_name, polled, ros_type
 from laconic.scene import build_scene, read_scene
 from laconic.scene.scene_tables import scene_tables
 from ros2_support import DOMAIN, WALL_NS, announced, last, rig_of
@@ -162,7 +169,7 @@ def test_the_participant_has_an_enclave() -> None:
 
 @pytest.mark.parametrize("distribution, bytes_of_gid", [("humble", 24), ("jazzy", 16)])
 def test_the_graph_has_node_and_endpoints(distribution: str, bytes_of_gid: int) -> None:
-    with rig_of(distribution=distribution, namespace="/floor1") as rig:
+    with rig_of(distribution=distribution, namespace="/floor1", services_for=("fastrtps",)) as rig:
         infos = polled(rig.peer._others)
         info = next(each for each in infos if each.node_entities_info_seq and
                     each.node_entities_info_seq[0].node_name == "laconic")
@@ -173,7 +180,9 @@ def test_the_graph_has_node_and_endpoints(distribution: str, bytes_of_gid: int) 
         readers = announced(rig.peer, BuiltinTopicDcpsSubscription).values()
         known = {bytes(each.key.bytes) for each in (*writers, *readers)}
         gids = [bytes(each.data)[:16] for each in (*node.writer_gid_seq, *node.reader_gid_seq)]
-        assert len(gids) > 20 and len(set(gids)) == len(gids)
+        assert sum(gid[:2] == HERE for gid in gids) == 16  # services for Fast DDS, by a participant of their own
+        gids = [gid for gid in gids if gid[:2] != HERE]
+        assert len(gids) == 9 and len(set(gids)) == len(gids)
         assert sum(gid in known for gid in gids) >= len(gids) - 1  # two readers share the name of cmd_vel
 
 
@@ -251,6 +260,7 @@ def test_a_machine_that_sleeps_is_told_and_not_made_up_for() -> None:
         assert rig.session.lateness.skipped_s == pytest.approx(30.0)
 
 
+@pytest.mark.nightly
 def test_a_long_run_prints_a_line_each_minute() -> None:
     with rig_of(rate_Hz=10.0, duration_s=130.0) as rig:
         rig.session.run()
@@ -339,3 +349,88 @@ def test_on_a_slope_the_imu_shows_gravity_along_and_across_the_ground() -> None:
         felt = last(reader).linear_acceleration
         assert (felt.x, felt.z) == pytest.approx((9.80665 * math.sin(math.radians(10.0)),
                                                   9.80665 * math.cos(math.radians(10.0))), rel=1e-3)
+
+
+# ---- the command
+
+LOCAL = ["--local", "--domain", "79"]
+
+
+def test_a_run_ends_after_its_duration_with_figures(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", "robotino2", *LOCAL, "--duration", "0.2", "--json"]) == 0
+    printed = capsys.readouterr()
+    figures = json.loads(printed.out)
+    assert figures["cycles"] == 10 and figures["messages"] == 50 and figures["commands"] == 0
+    assert figures["final"] == {"x_m": 0.0, "y_m": 0.0, "heading_rad": 0.0}
+    assert "hears Twist or TwistStamped on /cmd_vel" in printed.err
+
+
+def test_a_car_says_what_drives_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", "f1tenth", *LOCAL, "--duration", "0.1"]) == 0
+    assert "hears Twist or TwistStamped on /cmd_vel and AckermannDriveStamped on ackermann_cmd and drive" in \
+        capsys.readouterr().out
+
+
+def test_a_record_is_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.toml"
+    assert run(["ros2", "turtlebot3_burger", *LOCAL, "--duration", "0.1", "--record", str(path)]) == 0
+    assert f"wrote {path}: 100 steps" in capsys.readouterr().out
+    scene = laconic.read_scene(path)
+    assert scene.run.duration_s == pytest.approx(0.1) and scene.inputs == ()  # nothing moved, so no voltage acted
+
+
+def test_the_environment_names_domain_and_distribution(monkeypatch: pytest.MonkeyPatch,
+                                                       capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "80")
+    monkeypatch.setenv("ROS_DISTRO", "humble")
+    assert run(["ros2", "robotino2", "--local", "--duration", "0.1"]) == 0
+    assert "in domain 80," in capsys.readouterr().out
+    monkeypatch.setenv("ROS_DOMAIN_ID", "home")
+    assert run(["ros2", "robotino2", "--local"]) == 2
+    assert "ROS_DOMAIN_ID: home is not a whole number" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words, of_environment, cyclone, fast", [
+    ([], "", False, True), (["--rmw", "fastrtps"], "", False, True), ([], "rmw_fastrtps_cpp", False, True),
+    ([], "rmw_other", False, True), (["--rmw", "cyclonedds"], "rmw_fastrtps_cpp", True, False)])
+def test_services_are_for_both_unless_cyclonedds_is_named(words: list[str], of_environment: str, cyclone: bool,
+                                                          fast: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RMW_IMPLEMENTATION", of_environment)
+    made: list[Session] = []
+    monkeypatch.setattr(Session, "run", lambda session: made.append(session))
+    assert run(["ros2", "robotino2", *LOCAL, *words]) == 0
+    node = made[0].robots[0].node
+    assert (bool(node.services[0].reader), bool(node.other_readers)) == (cyclone, fast)
+
+
+def test_without_its_package_the_extra_is_named() -> None:
+    code = ("import sys; sys.modules['cyclonedds'] = None\n"
+            "from laconic.cli.main import run\n"
+            "sys.exit(run(['ros2', 'robotino2']))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith("laconic: ") and done.stderr.count("\n") == 1 and "cyclonedds" in done.stderr
+    assert extra_of("cyclonedds") == "ros2"
+
+
+def test_its_help_needs_no_package() -> None:
+    code = ("import sys; sys.modules['cyclonedds'] = None\n"
+            "from laconic.cli.main import run\n"
+            "sys.exit(run(['ros2', '--help']))")
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
+def test_a_signal_ends_the_run_in_order(number: int) -> None:
+    words = [sys.executable, "-m", "laconic", "ros2", "robotino2", *LOCAL, "--json"]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stderr is not None
+        assert "Festo Robotino 2" in process.stderr.readline()  # it runs
+        process.send_signal(number)
+        out, err = process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert process.returncode == 0
+    assert "stopped by the user" in err and json.loads(out)["robots"] == 1

@@ -5,6 +5,7 @@ Traffic stays on this machine. Each test room has a domain of its own.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -12,8 +13,9 @@ from typing import Any
 from cyclonedds.builtin import BuiltinDataReader
 
 from laconic.ros2.messages import message_class, new
+from laconic.ros2.names import USUAL, polled, topic_name
 from laconic.ros2.session import Clock, Ros2Options, Session
-from laconic.ros2.wire import Node, Participant, polled, topic_name
+from laconic.ros2.wire import Node, Participant
 from laconic.scene import Scene, read_scene
 
 DOMAIN = 77
@@ -72,13 +74,17 @@ class Rig:
         from cyclonedds.pub import DataWriter
         from cyclonedds.sub import DataReader
 
-        from laconic.ros2.wire import USUAL
-
         writer = make(DataWriter, topic_name("rq", "/", service, "Request"), request, USUAL, of_service="clientid=1;")
         reader = make(DataReader, topic_name("rr", "/", service, "Reply"), response, USUAL, of_service="clientid=1;")
+        others = getattr(self.session.participant, "others", None)
+        end = time.monotonic() + 10.0
+        while others is not None and not (writer.get_matched_subscriptions() and reader.get_matched_publications()):
+            assert time.monotonic() < end, "the service is not found"
+            self.turn()  # discovery takes real time
         writer.write(message_class(request, participant.gid_bytes, True)(client=41, sequence=7, **values))
         self.turn(2)
-        found = polled(reader)
+        while not (found := polled(reader)) and others is not None and time.monotonic() < end:
+            self.turn()
         assert [(each.client, each.sequence) for each in found] == [(41, 7)]
         return found[0]
 
@@ -86,12 +92,12 @@ class Rig:
 @contextmanager
 def rig_of(scene: str | Scene = "turtlebot3_burger", **options: Any) -> Iterator[Rig]:
     """A rig of a scene, whose session and peer leave the domain at the end."""
-    time, lines = Virtual(), []
-    given = Ros2Options(**{"domain": DOMAIN, "is_local": True, **options})
+    virtual, lines = Virtual(), list[str]()
+    given = Ros2Options(**{"domain": DOMAIN, "is_local": True, "services_for": ("cyclonedds",), **options})
     made = scene if isinstance(scene, Scene) else read_scene(scene)
-    with Session(made, given, lines.append, time.clock()) as session, \
+    with Session(made, given, lines.append, virtual.clock()) as session, \
             Participant(given.domain, given.distribution, is_local=True) as peer:
-        yield Rig(session, peer, time, lines)
+        yield Rig(session, peer, virtual, lines)
 
 
 def last(reader: Any) -> Any:

@@ -56,7 +56,7 @@ STATUSES = {
     "TWIST_JUMPS": "the twist turns a wheel too far at once",
     "TWIST_AGAINST_WHEELS": "the twist makes fixed wheels slide",
     "WHEELS_DISAGREE": "wheels ask for different turning centres",
-    "STEP_BEYOND_TRAIL_LIMIT": "a caster is too fast for an explicit step",
+    "STEP_BEYOND_TRAIL_LIMIT": "wheels turn a body on a hinge too fast for the step",
     "BELOW_LIMIT": "below the smallest value", "COORDINATED_SLIPS": "coordinated hinges need ideal ground",
     "NO_EFFECT_ON_HINGE": "a number does nothing on a hinge of this kind",
     "UNKNOWN_COMMAND": "no such CONTROL.command", "WRONG_STATE": "not in this state",

@@ -29,7 +29,7 @@ def drive_parameters() -> dict[str, tuple[str, str, str, str]]:
     """Field in the DBC → key in a scene, unit, item, when it is required."""
     found = {}
     for identifier, member, kind, rule in ROW.findall(LIST.read_text(encoding="utf-8")):
-        item = "0" if identifier in ("DRIVE_PROTOCOL", "DRIVE_WATCHDOG") else "wheel"
+        item = "0" if identifier in ("DRIVE_PROTOCOL", "DRIVE_WATCHDOG") else "wheel, hinge"
         required = "each drive, else NOT_POSITIVE" if rule in ("POSITIVE", "NOT_ZERO") else ""
         key = "node_ids" if member == "node_id" else member
         found[identifier] = (f"rig.drives.{key}" + NOTES.get(identifier, ""), unit_of(member, kind), item, required)

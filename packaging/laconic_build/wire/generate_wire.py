@@ -17,8 +17,13 @@ from .contract import attribute, limits, load
 
 ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
-OPTIONAL = {"WHEEL_ANGLE": "SENSORS", "IMU": "SENSORS", "ENCODER": "SENSORS", "ERROR_ESTIMATE": "ESTIMATE"}
+OPTIONAL = {"WHEEL_ANGLE": "SENSORS", "IMU": "SENSORS", "ENCODER": "SENSORS", "ERROR_ESTIMATE": "ESTIMATE",
+            "STEERING": "HINGES", "VELOCITY": "HINGES", "HINGE_ANGLE": "HINGES", "HINGE_RATE": "HINGES"}
 """The last frames of the DBC, which images leave out that are built without LACONIC_NODE_WITH_…"""
+PARTS = tuple(dict.fromkeys(OPTIONAL.values()))
+DEFAULTS = {"SENSORS": "1 /* 0: neither sensors nor their frames, for small images */",
+            "ESTIMATE": "0 /* 1: an error estimate and its frame; links the core's */",
+            "HINGES": "0 /* 1: vehicles with hinges and their frames; links the core's articulated */"}
 MADE_AT = re.compile(r"^( \* @brief .* by cantools version [\w.]+) .*\.$", re.MULTILINE)
 KEYS = ("none", "nonce", "session", "run")  # what keys a frame's protection
 
@@ -42,24 +47,23 @@ def constants(database: Database) -> list[str]:
     lines = [f"#define LACONIC_WIRE_VERSION {int(database.version or 0)}", f"#define LACONIC_WIRE_ID_BASE {ID_BASE}"]
     for message in database.messages:
         lines.append(f"#define LACONIC_WIRE_{message.name} {message.frame_id - ID_BASE}")
-    rig, node = ([m.frame_id - ID_BASE for m in database.messages if side in m.senders] for side in ("RIG", "NODE"))
+    always = [message for message in database.messages if message.name not in OPTIONAL]
+    rig, node = ([m.frame_id - ID_BASE for m in always if side in m.senders] for side in ("RIG", "NODE"))
     if max(rig) >= min(node):
         raise SystemExit("laconic.dbc: identifiers of the rig's frames must all lie below those of the node's")
     lines += [f"#define LACONIC_WIRE_RIG_OFFSETS {max(rig) + 1}", f"#define LACONIC_WIRE_NODE_FIRST {min(node)}"]
     if [m.name for m in database.messages[-len(OPTIONAL):]] != list(OPTIONAL):
         raise SystemExit(f"laconic.dbc: {', '.join(OPTIONAL)} must be the last frames")
-    classic = sum(not m.is_fd for m in database.messages)
-    of_estimate = sum(part == "ESTIMATE" for part in OPTIONAL.values())
-    lines += ["#ifndef LACONIC_NODE_WITH_SENSORS",
-              "#define LACONIC_NODE_WITH_SENSORS 1 /* 0: neither sensors nor their frames, for small images */",
-              "#endif", "#ifndef LACONIC_NODE_WITH_ESTIMATE",
-              "#define LACONIC_NODE_WITH_ESTIMATE 0 /* 1: an error estimate and its frame; links the core's */",
-              "#endif"]
-    for condition, less in (("#if LACONIC_NODE_WITH_ESTIMATE", 0), ("#elif LACONIC_NODE_WITH_SENSORS", of_estimate),
-                            ("#else", len(OPTIONAL))):
-        lines += [condition, *counts(min(node), max(node) - less, classic - less)]
-    lines.append("#endif")
-    moving = [m.frame_id - ID_BASE for m in database.messages if attribute(m, "E2EKey") == "run"]
+    for part, default in DEFAULTS.items():
+        lines += [f"#ifndef LACONIC_NODE_WITH_{part}", f"#define LACONIC_NODE_WITH_{part} {default}", "#endif"]
+    last, classic = max(m.frame_id - ID_BASE for m in always), sum(not m.is_fd for m in always)
+    lengths = ["#else", *counts(min(node), last, classic)]
+    for part in PARTS:  # a part's frames are behind those of the parts before
+        more = list(OPTIONAL.values()).count(part)
+        last, classic = last + more, classic + more
+        lengths = [f"#elif LACONIC_NODE_WITH_{part}", *counts(min(node), last, classic), *lengths]
+    lines += [lengths[0].replace("#elif", "#if"), *lengths[1:], "#endif"]
+    moving = [m.frame_id - ID_BASE for m in always if attribute(m, "E2EKey") == "run"]
     if sorted(moving) != list(range(min(moving), max(moving) + 1)):
         raise SystemExit("laconic.dbc: identifiers of the frames with E2EKey run must follow one another")
     lines += [f"#define LACONIC_WIRE_RUN_FIRST {min(moving)}", f"#define LACONIC_WIRE_RUN_OFFSETS {len(moving)}"]
@@ -84,11 +88,12 @@ def counts(first: int, last: int, classic: int) -> list[str]:
 
 def guarded(lines: list[str]) -> list[str]:
     """Lines of a table, of which the last ones are those that images may leave out."""
-    kept, parts = lines[:-len(OPTIONAL)], list(OPTIONAL.values())
-    of_sensors, of_estimate = ([line for line, part in zip(lines[-len(OPTIONAL):], parts, strict=True) if part == each]
-                               for each in ("SENSORS", "ESTIMATE"))
-    return [*kept, "#if LACONIC_NODE_WITH_SENSORS || LACONIC_NODE_WITH_ESTIMATE", *of_sensors, "#endif",
-            "#if LACONIC_NODE_WITH_ESTIMATE", *of_estimate, "#endif"]
+    found, numbers = lines[:-len(OPTIONAL)], list(OPTIONAL.values())
+    for at, part in enumerate(PARTS):
+        condition = " || ".join(f"LACONIC_NODE_WITH_{each}" for each in PARTS[at:])
+        of_part = [line for line, each in zip(lines[-len(OPTIONAL):], numbers, strict=True) if each == part]
+        found += [f"#if {condition}", *of_part, "#endif"]
+    return found
 
 
 def scale(message: Message, signal: Signal) -> list[str]:
@@ -151,8 +156,14 @@ extern const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS];
 extern const uint8_t laconic_wire_data_ids[LACONIC_WIRE_CLASSIC][16]; /* profile 22 */
 uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 
+/* Whether the rig sends the frame with that offset: to a node with hinges also STEERING, among the node's. */
+#define LACONIC_WIRE_FROM_RIG(offset) \\
+    ((offset) < LACONIC_WIRE_RIG_OFFSETS || (LACONIC_NODE_WITH_HINGES && (offset) == LACONIC_WIRE_STEERING))
+
 /* The lengths of these tables are in the name of an empty function, so that a node with others does not link. */
-#if LACONIC_NODE_WITH_ESTIMATE
+#if LACONIC_NODE_WITH_HINGES
+#define LACONIC_WIRE_BUILT laconic_wire_built_with_LACONIC_NODE_WITH_HINGES_1
+#elif LACONIC_NODE_WITH_ESTIMATE
 #define LACONIC_WIRE_BUILT laconic_wire_built_with_LACONIC_NODE_WITH_ESTIMATE_1
 #elif LACONIC_NODE_WITH_SENSORS
 #define LACONIC_WIRE_BUILT laconic_wire_built_with_LACONIC_NODE_WITH_ESTIMATE_0_and_LACONIC_NODE_WITH_SENSORS_1

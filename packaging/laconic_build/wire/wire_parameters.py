@@ -6,12 +6,13 @@ Field in the DBC → (key in a scene file, unit, item, required). The fields of 
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 
 from laconic.base.paths import SOURCE_DIR
 from laconic.core import Field, load
 
-from .drive_parameters import drive_parameters
+from .drive_parameters import drive_parameters, unit_of
 from .sensor_parameters import sensor_parameters
 
 NEEDS = {
@@ -23,6 +24,18 @@ NONE, WHEEL, SUPPORT, COMPONENT = "0", "wheel", "support", "1, 2, 3"
 NOTES = {"WHEEL_KIND": ": 1 rollers (omni, mecanum), 2 fixed", "WHEEL_LOCKED": ": 0 or 1",
          "DRIVEN": ": 0 or 1; 1 where it is not sent", "MOTOR_CIRCUIT": ": 0 driven, 1 open, 2 shorted",
          "METHOD": ": see below"}
+HINGE_LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "articulated.h"
+HINGE_ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+), +\w+, +(\w+),[\s\\]+\w+,[\s\\]+(\w+)\)")
+ONLY_REFUSED = ("HINGE_VOLTAGE", "HINGE_TORQUE", "HINGE_ACCELERATION", "TWIST_RATE")
+"""Inputs, which are only named in refusals."""
+HINGE_UNITS = {"kg": "kg", "kgm2": "kg m²", "Nms": "N m s", "Nm": "N m", "Nm_per_V": "N m/V", "m_per_s": "m/s"}
+HINGE_ITEMS = {"WHEEL_BODY": WHEEL, "BODY_COUNT": NONE, "START_VELOCITY": "1, 2", "START_YAW_RATE": NONE,
+               "TWIST": COMPONENT}
+HINGE_NOTES = {"BODY_PARENT": "a body before it; 0: the carriage", "BODY_COUNT": "bodies on hinges; 0: none",
+               "BODY_HINGE": "1 free, 2 motor, 3 prescribed, 4 coordinated", "WHEEL_BODY": "its body; 0: the carriage",
+               "HINGE_RATE": "at the start, of a prescribed hinge",
+               "TWIST": "at the start, where hinges are coordinated",
+               "START_VELOCITY": "of the carriage's centre of mass, body axes"}
 
 
 def units() -> dict[str, str]:
@@ -51,6 +64,19 @@ def taken() -> dict[str, tuple[str, str, str, str]]:
             for field in load().fields if field.table and field.table != "vehicle.motor"}
 
 
+def hinge_parameters() -> dict[str, tuple[str, str, str, str]]:
+    """Field in the DBC → meaning, unit, item, when it is required."""
+    found = {}
+    for identifier, member, kind, need in HINGE_ROW.findall(HINGE_LIST.read_text(encoding="utf-8")):
+        if identifier not in ONLY_REFUSED:
+            endings = [ending for ending in HINGE_UNITS if member.endswith("_" + ending)]
+            unit = HINGE_UNITS[max(endings, key=len)] if endings else unit_of(member, kind)
+            key = f"hinges: {HINGE_NOTES.get(identifier, 'body.' + member if need == 'ALWAYS' else member)}"
+            required = "each body" if need == "ALWAYS" else ""
+            found[identifier] = (key, unit, HINGE_ITEMS.get(identifier, "body"), required)
+    return found
+
+
 PARAMETERS = {
     "RESISTANCE": ("vehicle.motor.resistance_ohm", "Ω", NONE, RESERVED),
     "TORQUE_CONSTANT": ("vehicle.motor.torque_constant_Nm_per_A", "N m/A", NONE, RESERVED),
@@ -59,4 +85,4 @@ PARAMETERS = {
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
     "DRIVE_FAULTS": ("an order while the node plays, see Drives", "integer", WHEEL, "not of a vehicle"),
-} | taken() | drive_parameters() | sensor_parameters()
+} | taken() | drive_parameters() | sensor_parameters() | hinge_parameters()

@@ -8,7 +8,8 @@ from importlib.metadata import PackageNotFoundError, requires
 from laconic.base.paths import IS_WHEEL
 from laconic.errors import BadInput
 
-DISTRIBUTIONS = {"can": "python-can", "e2e": "autosar-e2e", "flint": "python-flint", "serial": "pyserial"}
+DISTRIBUTIONS = {"can": "python-can", "e2e": "autosar-e2e", "flint": "python-flint", "rerun": "rerun-sdk",
+                 "serial": "pyserial", "zenoh": "eclipse-zenoh"}
 """Modules whose distribution has another name."""
 
 

@@ -49,6 +49,46 @@ class OutputBag(click.ParamType[Path]):
         return outputs.claim_folder(option, path)
 
 
+STORAGES = ("sqlite3", "mcap")  # of a rosbag2, by the names that ROS has for them
+
+
+class RerunTarget(click.ParamType[Path]):
+    """FILE.rrd, or nothing: the viewer itself, which is the path without a name."""
+
+    name = "rrd"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path, claimed for this option."""
+        if not str(value):
+            return Path()
+        path = Path(value)
+        if path.suffix.lower() != ".rrd":
+            raise BadInput(f"--rerun {value}: is no name of a recording; choose a name that ends in .rrd, or put "
+                           "--rerun last, to start the viewer")
+        return outputs.claim_file("--rerun", path, (".rrd",), ctx)
+
+
+def recorded_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a run that others look at: --bag, --storage, --foxglove, --rerun."""
+    for option in (
+            click.option("--rerun", type=RerunTarget(), is_flag=False, flag_value="", metavar="[FILE.rrd]",
+                         help="Show the run in the viewer of Rerun, or write it for it."),
+            click.option("--foxglove", type=OutputFile(".mcap"), metavar="FILE.mcap",
+                         help="Write the run for Foxglove, and FILE.layout.json, which arranges it there."),
+            click.option("--storage", type=click.Choice(STORAGES),
+                         help="Of the folder that --bag names.  [default: sqlite3]"),
+            click.option("--bag", type=OutputBag(), metavar="BAG",
+                         help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")):
+        command = option(command)
+    return command
+
+
+def check_storage(bag: Path | None, storage: str | None) -> None:
+    """BadInput for a storage without a folder that has one."""
+    if storage is not None and (bag is None or bag.suffix.lower() == ".mcap"):
+        raise BadInput(f"--storage {storage}: is of a rosbag2, which is a folder; give --bag FOLDER, or leave it out")
+
+
 class SceneName(click.ParamType[str]):
     """A scene by its path or by its name; it stays as it was given, for `read_scene`.
 
@@ -71,11 +111,11 @@ class SceneName(click.ParamType[str]):
 
 
 def _check_rigid(path: Path, command: str) -> None:
-    from laconic.scene.hinges import file_has_hinges  # loads the core
+    from laconic.scene.hinges import WITHOUT_HINGES, file_has_hinges  # loads the core
 
     if file_has_hinges(path):
         raise BadInput(f"{path}: {command} does not take vehicles with hinges (steered wheels, casters, trailers) yet; "
-                       "use laconic simulate")
+                       f"use laconic simulate, or {WITHOUT_HINGES}")
 
 
 class ReferenceOrScene(click.ParamType[str]):
@@ -178,13 +218,14 @@ def belongs_to(flag: str, is_on: bool, *options: str) -> None:
 
 
 def goes_with(flag: str, *options: str) -> None:
-    """BadInput for an option that was given beside a flag that makes no use of it."""
+    """BadInput for an option that was given beside a flag, or a scene in words, that makes no use of it."""
+    remedy = "leave one of them out" if flag.startswith("--") else "leave it out"
     context = click.get_current_context()
     for parameter in context.command.params:
         given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
         name = max(parameter.opts, key=len)
         if given and isinstance(parameter, click.Option) and name != flag and name not in options:
-            raise BadInput(f"{name}: has no meaning beside {flag}; leave one of them out")
+            raise BadInput(f"{name}: has no meaning beside {flag}; {remedy}")
 
 
 def check_step(step_s: float | None) -> None:

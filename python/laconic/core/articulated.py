@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import cache
 from itertools import count, takewhile
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.articulated_input import input_slots, row_length, row_of_hinges
+from laconic.core.articulated_input import by_signal, input_slots, row_length, row_of_hinges
 from laconic.core.binding import Core, load
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, items, number, one_of, shown, step_count
@@ -93,6 +94,10 @@ class ArticulatedReactions:
     balance: float               # what is left at body 0, over the largest force there: rounding
     largest_N: float             # the largest reaction of a wheel
     no_slip_margin_N: float      # the least of friction limit − reaction; 0 where no loads are given
+
+
+NEEDS_OF_HINGES = {"hinge_voltage_V": "a motor", "hinge_torque_Nm": 'a hinge that is "free" or "motor"',
+                   "steering_rate_rad_per_s": 'a hinge that is "prescribed"'}
 
 
 class ArticulatedVehicle(OwnMemory):
@@ -174,7 +179,32 @@ class ArticulatedVehicle(OwnMemory):
         """A row of input numbers from names: those of every vehicle, and hinge_voltage_V, hinge_torque_Nm and
         steering_rate_rad_per_s (a list with one number for each hinge, or one for a name: hinge_torque_Nm[fork]), and
         steering_twist (3 numbers). BadInput for what is no signal, no number or no hinge."""
-        return row_of_hinges(self.core, self.names, self.wheel_count, {} if values is None else values)
+        row = row_of_hinges(self.core, self.names, self.wheel_count, {} if values is None else values)
+        self._check_idle(row)
+        return row
+
+    def _check_idle(self, row: np.ndarray) -> None:
+        """BadInput for a number of a row that this vehicle does not read."""
+        for at in self._given(row, "voltage_V[1]", self.wheel_count):
+            if not self.model.wheel[at].gain_Nm_per_V:
+                raise BadInput(f"voltage_V[{at + 1}]: would do nothing, wheel {at + 1} has no motor; give 0, or drive "
+                               f"it by axle_torque_Nm[{at + 1}]")
+        prescribed, coordinated = (self.core.lib.LACONIC_MOTION_PRESCRIBED, self.core.lib.LACONIC_MOTION_COORDINATED)
+        for signal, needs in NEEDS_OF_HINGES.items():
+            for at in self._given(row, signal, self.body_count):
+                link = self.model.link[at]
+                is_commanded = link.motion in (prescribed, coordinated)
+                is_read = (link.motion == prescribed if signal == "steering_rate_rad_per_s"
+                           else not is_commanded and (signal != "hinge_voltage_V" or bool(link.gain_Nm_per_V)))
+                if not is_read:
+                    raise BadInput(f"{signal}[{self.names[at]}]: would do nothing, as it needs {needs}; give 0")
+
+    def _given(self, row: np.ndarray, first: str, count: int) -> list[int]:
+        """The items of a signal that are not 0."""
+        if not count:
+            return []
+        start = self.slot(first)
+        return np.flatnonzero(row[start : start + count]).tolist()
 
     def row_of(self, inputs: Mapping[str, float | Sequence[float]] | np.ndarray | None) -> np.ndarray:
         """A row as it is; of names a new one."""
@@ -250,7 +280,7 @@ class ArticulatedPlant(OwnMemory):
         step, model, why = self.core.lib.laconic_articulated_step, self.vehicle.model, self.core.why()
         for _ in range(step_count("steps", steps)):
             if step(model, self.integrator, self.c, held, held, why) != 0:
-                raise self.core.refusal(why)
+                raise by_signal(self.core.refusal(why), self.vehicle.names)
             self.steps += 1
 
     def step(self, start: Any, end: Any) -> None:
@@ -274,8 +304,16 @@ class ArticulatedPlant(OwnMemory):
             if ramped:
                 ramp(start, end, h)
             if step(model, self.integrator, self.c, start, end, why) != 0:
-                raise self.core.refusal(why)
+                raise by_signal(self.core.refusal(why), self.vehicle.names)
             self.steps += 1
+
+    def twin(self, step_s: float) -> ArticulatedPlant:
+        """The same vehicle at this moment, in steps of another size; Refused for one that the method cannot take."""
+        found = copy(self)
+        found.c, found.steps = self.save(), 0
+        found.integrator = self.core.ffi.new("laconic_articulated_integrator *")
+        found.set_step(step_s)
+        return found
 
     def save(self) -> Any:
         """A copy of the state, for `restore`."""

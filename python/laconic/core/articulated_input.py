@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.given import finite_numbers, shown
+from laconic.core.given import finite_number, finite_numbers, shown
 from laconic.core.inputs import no_such_wheel, slots_of
-from laconic.errors import BadInput, nearest_of
+from laconic.errors import BadInput, Refused, nearest_of
 
 if TYPE_CHECKING:
     from laconic.core import Core
@@ -77,7 +78,24 @@ def row_of_hinges(core: Core, names: Sequence[str], wheel_count: int, values: An
             if inside and int(inside.rstrip("]")) > wheel_count:
                 raise BadInput(no_such_wheel(signal, name, wheel_count))
             slots = slots if inside else range(slots.start, slots.start + wheel_count)
-        many = [value] if isinstance(value, int | float | np.number) else value
         with np.errstate(over="ignore"):
-            row[slots.start : slots.stop] = finite_numbers(str(signal), many, len(slots))
+            if isinstance(value, int | float | np.number):
+                value = [finite_number(str(signal), value)]
+            row[slots.start : slots.stop] = finite_numbers(str(signal), value, len(slots))
     return row
+
+
+OF_CORE = {of_core: name for name, of_core in PER_HINGE.items()} | {
+    "hinge_acceleration_rad_per_s2": "steering_acceleration_rad_per_s2", "twist": TWIST,
+    "twist_rate": "steering_twist_rate"}
+"""Inputs by their members in the core, which its refusals name."""
+
+
+def by_signal(refused: Refused, names: Sequence[str]) -> Refused:
+    """A refusal of an input's number by its signal: hinges by their names."""
+    found = re.match(r"(\w+)\[(\d+)\]: ", refused.message)
+    if not found or found[1] not in OF_CORE:
+        return refused
+    item = found[2] if found[1].startswith("twist") else names[int(found[2]) - 1]
+    text = f"{OF_CORE[found[1]]}[{item}]: {refused.message[found.end():]}"
+    return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)

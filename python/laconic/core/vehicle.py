@@ -69,7 +69,10 @@ class Vehicle(OwnMemory):
         from laconic.scene import check_scene  # which is above this room
 
         made = cls.__new__(cls)
-        core = check_scene(scene).core()
+        if check_scene(scene).has_hinges:
+            raise BadInput(f"{scene.path}: {scene.hinges[0].place}: laconic.Vehicle does not take vehicles with hinges"
+                           "; use laconic.ArticulatedVehicle.of(scene)")
+        core = scene.core()
         made._set(core, scene.c_vehicle(core))
         return made
 

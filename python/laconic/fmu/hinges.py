@@ -9,7 +9,7 @@ from laconic.core import load
 from laconic.core.articulated import body_members, method_names
 from laconic.errors import BadInput
 from laconic.scene import Scene
-from laconic.scene.hinge_signals import TWIST
+from laconic.scene.hinge_signals import ANGLE, CURVATURE, TWIST
 from laconic.simulation.articulated import start_plant
 from laconic.simulation.steering import Commands
 from laconic_fmu.description import read
@@ -17,6 +17,11 @@ from laconic_fmu.description import read
 DESCRIPTION = SOURCE_DIR / "fmu/articulated/modelDescription.xml"
 OF_BODY = ("hinge_x_m", "hinge_y_m", "mass_kg", "com_x_m", "com_y_m", "yaw_inertia_kgm2")
 """Members of a body whose variables begin with body_; those of the others begin with hinge_."""
+
+
+INSTEAD = {CURVATURE: "steering_twist and steering_twist_rate",
+           ANGLE: "steering_rate_rad_per_s of prescribed hinges, and steering_twist of coordinated ones"}
+"""Inputs of scenes that the FMU does not have, and what it takes instead."""
 
 
 def variable_of(member: str) -> str:
@@ -63,8 +68,8 @@ def check(scene: Scene, **options: bool) -> None:
         return
     for option, wanted in options.items():
         if wanted:
-            raise BadInput(f"{option}: the FMU of a vehicle with hinges ({scene.path}) has no such variant yet; leave "
-                           "it out")
+            raise BadInput(f"--{option}: the FMU of a vehicle with hinges ({scene.path}) has no such variant yet; "
+                           "leave it out")
     if scene.sensors.imu is not None or scene.sensors.encoder is not None:
         raise BadInput(f"{scene.path}: sensors: the FMU of a vehicle with hinges has no sensors yet; take them out")
 
@@ -72,7 +77,13 @@ def check(scene: Scene, **options: bool) -> None:
 def left_out(scene: Scene) -> str:
     """One line for what the scene has and its FMU does not; "" for none."""
     limited = [hinge.name for hinge in scene.hinges if hinge.has_stops or math.isfinite(hinge.rate_limit_rad_per_s)]
-    if not limited:
-        return ""
-    return (f"{scene.path}: the FMU has no limits of angle and rate: those of {', '.join(limited)} are left out; keep "
-            "to them in what steers it")
+    found = []
+    if limited:
+        found.append(f"the FMU has no limits of angle and rate: those of {', '.join(limited)} are left out; keep to "
+                     "them in what steers it")
+    commands = dict.fromkeys(each.signal for each in scene.inputs if each.signal.partition("[")[0] in INSTEAD)
+    if commands:
+        instead = dict.fromkeys(INSTEAD[each.partition("[")[0]] for each in commands)
+        found.append(f"the FMU has no inputs {', '.join(commands)}, which the scene steers by; give "
+                     f"{' and '.join(instead)}")
+    return f"{scene.path}: {'; '.join(found)}" if found else ""

@@ -15,9 +15,9 @@ DRAWN = ("origin_x_m", "origin_y_m", "body_x_m", "body_y_m", "body_heading_rad")
 def outline_points(scene: Scene) -> dict[str, list[complex]]:
     """What a body's outline holds, in its own frame: its hinge, the hinges on it, its wheels and supports."""
     found: dict[str, list[complex]] = {CARRIAGE: [complex(each["x_m"], each["y_m"])
-                                                  for each in scene.vehicle["support"]]}
+                                                  for each in scene.vehicle.get("support", ())]}
     found |= {hinge.name: [0j] for hinge in scene.hinges}
-    for body in scene.vehicle["body"]:
+    for body in scene.vehicle.get("body", ()):
         found[body["parent"]].append(complex(body["hinge_x_m"], body["hinge_y_m"]))
     for wheel in scene.vehicle["wheel"]:
         found[wheel.get("body", CARRIAGE)].append(complex(wheel["x_m"], wheel["y_m"]))

@@ -15,9 +15,9 @@ import numpy as np
 
 from laconic.can.play.vehicle import moved_inertia
 from laconic.errors import BadInput, Refused
-from laconic.ros2.motion import Motion, Seen, motion_of, product
+from laconic.ros2.motion import Lanes, Motion, Seen, Singles, motion_of, product
 from laconic.scene import Scene
-from laconic.scene.base import BaseTable, has_motor
+from laconic.scene.base import BaseTable, has_motor, usual_joints
 
 BANDWIDTH_RAD_PER_S = 20.0  # of a wheel's speed, where the scene gives no gain: 50 ms, as small bases have
 SHARE_OF_STEP = 0.1         # the bandwidth is at most this over the step
@@ -60,6 +60,10 @@ class Odometry:
             return
         ahead, left, turn = (self._estimate @ (angles_rad - self._angles)).tolist()
         self._angles = angles_rad
+        self.add(ahead, left, turn, period_s)
+
+    def add(self, ahead: float, left: float, turn: float, period_s: float) -> None:
+        """A motion in the axes of where it began, along an arc."""
         self.velocity = (ahead / period_s, left / period_s, turn / period_s)
         sine, cosine = math.sin(self.heading_rad), math.cos(self.heading_rad)
         half = 0.5 * turn
@@ -77,11 +81,10 @@ class Base:
     def __init__(self, scene: Scene, robots: int = 1):
         check_drivable(scene)
         self.scene, self.table = scene, scene.base or BaseTable()
-        self.motion: Motion = motion_of(scene, robots)
         self.step_s, self.robots = scene.run.step_s, robots
         self.wheel_count = scene.wheel_count
-        self.beliefs, self.loop = beliefs_of(scene, self.table, self.motion), loop_of(scene, self.table)
-        self.odometry = [Odometry(self.beliefs) for _ in range(robots)]
+        self.motion, self.loop = self._make(robots)
+        self.odometry = [self._new_odometry() for _ in range(robots)]
         self.record: list[np.ndarray] | None = None  # of the first robot's input, step by step
         self.is_recording = False
         self.limited = np.zeros(robots, bool)  # at a voltage or torque limit since the last look
@@ -89,10 +92,30 @@ class Base:
         self._set = np.zeros((3, robots))      # what the ramps have made of them
         self._integral = np.zeros((scene.wheel_count, robots))
         self._speeds = self.motion.speeds()
-        self._set_speeds = self._speeds_of(self._set)
-        self._ramps = self.table.acceleration_limit_m_per_s2, self.table.yaw_acceleration_limit_rad_per_s2
+        self._set_speeds = np.zeros((scene.wheel_count, robots))
+        self._ramps: tuple[Any, float | None] = (self.table.acceleration_limit_m_per_s2,
+                                                 self.table.yaw_acceleration_limit_rad_per_s2)
         self._seen_steps = 0
         self.look()
+
+    def _make(self, robots: int) -> tuple[Motion, Loop]:
+        """Robots that step, and the controller of their wheels."""
+        motion = motion_of(self.scene, robots)
+        self.beliefs = beliefs_of(self.scene, self.table, motion)
+        return motion, loop_of(self.scene, self.table)
+
+    def _new_odometry(self) -> Odometry:
+        return Odometry(self.beliefs)
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the joints in `Seen`: wheels, then hinges."""
+        return list(self.table.joint_names) or usual_joints(self.wheel_count)
+
+    @property
+    def signals(self) -> list[str]:
+        """Inputs of a scene that the columns of `record` are."""
+        return [f"{self.loop.signal}[{wheel}]" for wheel in range(1, self.wheel_count + 1)]
 
     # ---- commands
 
@@ -103,6 +126,13 @@ class Base:
         remarks = [f"{name} = {asked:g} is impossible for these wheels and becomes {got:g}" for name, asked, got in
                    zip(("linear.x", "linear.y", "angular.z"), given, np.round(wanted, 9) + 0.0, strict=True)
                    if abs(asked - got) > IMPOSSIBLE]
+        remarks += self._limit(wanted)
+        self._wanted[:, robot] = wanted
+        return remarks
+
+    def _limit(self, wanted: np.ndarray) -> list[str]:
+        """Holds a velocity within the limits of the scene; returns what was limited, in words."""
+        remarks = []
         speed, most = float(np.hypot(wanted[0], wanted[1])), self.table.speed_limit_m_per_s
         if most is not None and speed > most:
             wanted[:2] *= most / speed
@@ -111,16 +141,23 @@ class Base:
         if most is not None and abs(wanted[2]) > most:
             remarks.append(f"a yaw rate of {wanted[2]:g} rad/s is limited to {most:g} rad/s")
             wanted[2] = math.copysign(most, wanted[2])
-        self._wanted[:, robot] = wanted
         return remarks
+
+    @property
+    def is_car(self) -> bool:
+        """Whether `ackermann` drives it."""
+        return False
+
+    def ackermann(self, robot: int, speed_m_per_s: float, steering_rad: float, *, acceleration_m_per_s2: float = 0.0,
+                  steering_rad_per_s: float = 0.0) -> list[str]:
+        """Drives a car by the angle of a wheel on its middle line; returns as `command`."""
+        raise NotImplementedError  # which is_car tells
 
     def advance(self, steps: int) -> list[tuple[int, Refused]]:
         """Takes steps of all robots; returns those whose step the core refused, which stand still from then on."""
         loop, step_s, refused = self.loop, self.step_s, []
         for _ in range(steps):
-            if (self._set != self._wanted).any():
-                self._ramp()
-                self._set_speeds = self._speeds_of(self._set)
+            self._aim()
             error = self._set_speeds - self._speeds
             given = loop.gain * error + self._integral
             growth = loop.integral_gain * step_s * error
@@ -133,10 +170,20 @@ class Base:
                     given = held
             self._integral += growth
             if self.is_recording and self.record is not None and len(self.record) < MOST_RECORDED_STEPS:
-                self.record.append(given[:, 0].copy())
+                self.record.append(self._inputs(given))
             refused += self.motion.step(given)
             self._speeds = self.motion.speeds()
         return refused
+
+    def _aim(self) -> None:
+        """Makes the set speeds of the coming step."""
+        if (self._set != self._wanted).any():
+            self._ramp()
+            self._set_speeds = self._speeds_of(self._set)
+
+    def _inputs(self, given: np.ndarray) -> np.ndarray:
+        """What acts on the first robot in the coming step, by `signals`."""
+        return given[:, 0].copy()
 
     def _ramp(self) -> None:
         """Moves the set velocity towards the command, as far as the acceleration limits allow in one step."""
@@ -170,7 +217,7 @@ class Base:
     def reset(self, robot: int) -> None:
         """Puts a robot back to the scene's start, with all that it believes."""
         self.motion.restart(robot)
-        self.odometry[robot] = Odometry(self.beliefs)
+        self.odometry[robot] = self._new_odometry()
         self._forget(robot)
 
     def place(self, robot: int, x_m: float, y_m: float, heading_rad: float) -> None:
@@ -183,7 +230,7 @@ class Base:
         self.is_recording = False  # what comes is no longer the run that began at the scene's start
         for each in (self._wanted, self._set, self._integral):
             each[:, robot] = 0.0
-        self._set_speeds = self._speeds_of(self._set)
+        self._set_speeds[:, robot] = 0.0
         self._speeds = self.motion.speeds()
         self.odometry[robot].see(self.motion.look(robot, 0.0).encoder_rad, 0.0)
 
@@ -203,7 +250,7 @@ def driven_wheels(scene: Scene) -> list[bool]:
             for wheel in scene.vehicle["wheel"]]
 
 
-def beliefs_of(scene: Scene, table: BaseTable, motion: Motion) -> Beliefs:
+def beliefs_of(scene: Scene, table: BaseTable, motion: Singles | Lanes) -> Beliefs:
     """The geometry as the base has it."""
     wheels = scene.vehicle["wheel"]
     rows = motion.rows.copy()
@@ -240,9 +287,14 @@ def across_row(wheels: Sequence[dict[str, Any]]) -> np.ndarray:
 
 def loop_of(scene: Scene, table: BaseTable) -> Loop:
     """Gains of the scene, or those of a first-order loop; a wheel without a motor has none."""
-    driven, vehicle = driven_wheels(scene), scene.c_vehicle(scene.core())
+    driven = driven_wheels(scene)
+    return loop_with(scene, table, driven, scene.c_vehicle(scene.core()), moved_inertia(scene, driven))
+
+
+def loop_with(scene: Scene, table: BaseTable, driven: Sequence[bool], vehicle: Any, inertia: Sequence[float]) -> Loop:
+    """The same for a laconic_vehicle, and the inertia that each of its wheels turns."""
     bandwidth = min(BANDWIDTH_RAD_PER_S, SHARE_OF_STEP / scene.run.step_s)
-    inertia, is_voltage = moved_inertia(scene, driven), has_motor(scene.vehicle)
+    is_voltage = has_motor(scene.vehicle)
     gains, integrals = np.zeros((2, scene.wheel_count, 1))
     for wheel in (number for number, is_driven in enumerate(driven) if is_driven):
         push, drag = of_motor(vehicle, wheel) if is_voltage else (1.0, 0.0)

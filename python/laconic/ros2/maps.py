@@ -13,8 +13,8 @@ from laconic.base.text_file import text_of_file
 from laconic.errors import BadInput, reason_of
 from laconic.ros2.messages import new
 from laconic.ros2.motion import Seen
-from laconic.ros2.node import NANO, Out, RobotNode
-from laconic.ros2.wire import LATCHED
+from laconic.ros2.names import LATCHED, NANO, Out
+from laconic.ros2.node import RobotNode
 
 KEYS = ("image", "resolution", "origin")
 RAYS = 360

@@ -14,11 +14,15 @@ import struct
 from dataclasses import dataclass
 from functools import cache
 from types import new_class
-from typing import Any
+from typing import Any, ClassVar
 
-from cyclonedds.idl import IdlStruct
-from cyclonedds.idl import types as idl_types
-from cyclonedds.idl.annotations import final
+try:
+    from cyclonedds.idl import IdlStruct
+    from cyclonedds.idl import types as idl_types
+    from cyclonedds.idl.annotations import final
+    HAS_IDL = True
+except ImportError:  # Zenoh needs none
+    HAS_IDL = False
 
 DEFINITIONS = """
 builtin_interfaces/msg/Time: int32 sec, uint32 nanosec
@@ -36,6 +40,9 @@ geometry_msgs/msg/TwistWithCovariance: geometry_msgs/msg/Twist twist, float64[36
 geometry_msgs/msg/Transform: geometry_msgs/msg/Vector3 translation, geometry_msgs/msg/Quaternion rotation
 geometry_msgs/msg/TransformStamped: std_msgs/msg/Header header, string child_frame_id, \
 geometry_msgs/msg/Transform transform
+ackermann_msgs/msg/AckermannDrive: float32 steering_angle, float32 steering_angle_velocity, float32 speed, \
+float32 acceleration, float32 jerk
+ackermann_msgs/msg/AckermannDriveStamped: std_msgs/msg/Header header, ackermann_msgs/msg/AckermannDrive drive
 tf2_msgs/msg/TFMessage: geometry_msgs/msg/TransformStamped[] transforms
 nav_msgs/msg/Odometry: std_msgs/msg/Header header, string child_frame_id, \
 geometry_msgs/msg/PoseWithCovariance pose, geometry_msgs/msg/TwistWithCovariance twist
@@ -97,7 +104,6 @@ GID = "rmw_dds_common/msg/Gid"
 GID_FIELDS = {16: "uint8[16] data", 24: "uint8[24] data"}
 """Of a Gid: 24 bytes up to Humble, 16 since Iron. Its .msg file has char, which is uint8 in IDL and in a hash."""
 
-idl: Any = idl_types
 FIELD_TYPES = {"int8": 2, "uint8": 3, "int16": 4, "uint16": 5, "int32": 6, "uint32": 7, "int64": 8, "uint64": 9,
                "float32": 10, "float64": 11, "bool": 15, "byte": 16, "string": 17}
 """Numbers of basic types in a type description (REP 2011)."""
@@ -106,7 +112,8 @@ ARRAY, BOUNDED, UNBOUNDED = 48, 96, 144  # added to the number of an item's type
 
 FORMATS = {"int8": "b", "uint8": "B", "byte": "B", "bool": "?", "int16": "h", "uint16": "H", "int32": "i",
            "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
-OF_IDL: dict[str, Any] = {"byte": idl.uint8, "bool": bool, "string": str}
+MOST_ITEMS = 1 << 24  # of one sequence: no robot has more, and broken lengths end here
+CDR_LITTLE = b"\x00\x01\x00\x00"  # XCDR1, little endian
 CDR_HEADER = 4  # bytes before the first member, which alignment does not count
 IS_UNIT = {"geometry_msgs/msg/Quaternion": {"w": 1.0}}
 HEADER_OF_REQUEST = "uint64 client, int64 sequence"
@@ -121,6 +128,11 @@ class FieldType:
     bound: int = 0            # of a string's length
     many: int = 0             # ARRAY, BOUNDED, UNBOUNDED; 0: a single one
     count: int = 0            # items of an array, at most items of a bounded sequence
+
+    @property
+    def is_sequence(self) -> bool:
+        """Whether their number is written before them."""
+        return self.many in (BOUNDED, UNBOUNDED)
 
     @property
     def is_nested(self) -> bool:
@@ -165,6 +177,8 @@ def message_class(name: str, gid_bytes: int = 16, with_header: bool = False) -> 
 
 @cache
 def _made(name: str, gid_bytes: int, with_header: bool) -> Any:
+    if not HAS_IDL:
+        return plain_class(name, gid_bytes)
     fields = (fields_of(HEADER_OF_REQUEST) if with_header else ()) + definitions(gid_bytes)[name]
     unit, body = IS_UNIT.get(name, {}), {}
     annotations = {}
@@ -181,8 +195,23 @@ def _made(name: str, gid_bytes: int, with_header: bool) -> Any:
     return made
 
 
+@cache
+def plain_class(name: str, gid_bytes: int = 16) -> Any:
+    """The same class without cyclonedds."""
+    body: dict[str, Any] = {"__annotations__": {}, "_fields": definitions(gid_bytes)[name], "_items": {}}
+    for field, kind in body["_fields"]:
+        item: Any = plain_class(kind.item, gid_bytes) if kind.is_nested else None
+        body["__annotations__"][field], body["_items"][field] = Any, item
+        fresh = item if kind.is_nested and not kind.many else _fresh(kind, gid_bytes, IS_UNIT.get(name, {}).get(field))
+        body[field] = dataclasses.field(default_factory=fresh)
+    made = new_class(name.rpartition("/")[2], (Plain,), {}, lambda space: space.update(body))
+    return dataclass(made)
+
+
 def _idl_type(kind: FieldType, gid_bytes: int) -> Any:
-    item = message_class(kind.item, gid_bytes) if kind.is_nested else OF_IDL.get(kind.item) or getattr(idl, kind.item)
+    idl: Any = idl_types
+    plain = {"byte": idl.uint8, "bool": bool, "string": str}
+    item = message_class(kind.item, gid_bytes) if kind.is_nested else plain.get(kind.item) or getattr(idl, kind.item)
     if kind.bound:
         item = idl.bounded_str[kind.bound]
     if kind.many == ARRAY:
@@ -210,17 +239,133 @@ def new(kind: str, /, **values: Any) -> Any:
     return message_class(kind)(**values)
 
 
+# ---- messages without cyclonedds, which Zenoh does not need
+
+class Plain:
+    """A message that writes and reads itself."""
+
+    __idl__: ClassVar[Any] = None
+    _fields: ClassVar[Any]
+    sample_info: Any
+
+    def serialize(self, use_version_2: bool = False) -> bytes:
+        """With its header."""
+        out = bytearray()
+        _write(self, out)
+        return CDR_LITTLE + bytes(out)
+
+    @classmethod
+    def deserialize(cls, data: bytes, has_header: bool = True) -> Any:
+        """A message of bytes; ValueError for what is not one of this type."""
+        start = CDR_HEADER if has_header else 0
+        order = "<" if not has_header or data[1:2] == b"\x01" else ">"
+        try:
+            return _read(cls, Source(bytes(data[start:]), order))
+        except (struct.error, UnicodeDecodeError, IndexError) as error:
+            raise ValueError(f"these bytes are no {cls.__name__}") from error
+
+
+class Source:
+    """Bytes that are read one after the other."""
+
+    def __init__(self, data: bytes, order: str):
+        self.data, self.order, self.at = data, order, 0
+
+    def numbers(self, item: str, count: int) -> tuple[Any, ...]:
+        """Numbers of one kind, aligned to their size."""
+        form = FORMATS[item]
+        size = struct.calcsize(form)
+        self.at += -self.at % size
+        if count > MOST_ITEMS or self.at + count * size > len(self.data):
+            raise struct.error("the bytes end")
+        found = struct.unpack_from(f"{self.order}{count}{form}", self.data, self.at)
+        self.at += count * size
+        return found
+
+    def text(self) -> str:
+        """A string."""
+        length = self.numbers("uint32", 1)[0]
+        if not 0 < length <= len(self.data) - self.at:
+            raise struct.error("a text ends beyond the bytes")
+        self.at += length
+        return self.data[self.at - length : self.at - 1].decode()
+
+
+def _write(message: Any, out: bytearray) -> None:
+    for name, kind in message._fields:
+        value = getattr(message, name)
+        if not kind.many:
+            _write_items(kind, [value], out)
+            continue
+        if kind.is_sequence:
+            _pad(out, 4)
+            out += struct.pack("<I", len(value))
+        _write_items(kind, value, out)
+
+
+def _write_items(kind: FieldType, items: Any, out: bytearray) -> None:
+    if kind.is_nested:
+        for each in items:
+            _write(each, out)
+    elif kind.item == "string":
+        for each in items:
+            data = each.encode() + b"\0"
+            _pad(out, 4)
+            out += struct.pack("<I", len(data)) + data
+    elif len(items):
+        form = FORMATS[kind.item]
+        _pad(out, struct.calcsize(form))
+        out += struct.pack(f"<{len(items)}{form}", *items)
+
+
+def _pad(out: bytearray, size: int) -> None:
+    out += bytes(-len(out) % size)
+
+
+def _read(cls: Any, source: Source) -> Any:
+    made = cls()
+    for name, kind in cls._fields:
+        if not kind.many:
+            setattr(made, name, _read_items(kind, source, 1, getattr(made, name).__class__)[0])
+            continue
+        count = source.numbers("uint32", 1)[0] if kind.is_sequence else kind.count
+        if kind.is_sequence and (count > MOST_ITEMS or (kind.count and count > kind.count) or count > len(source.data)):
+            raise struct.error("a sequence is too long")
+        setattr(made, name, _read_items(kind, source, count, cls._items[name]))
+    return made
+
+
+def _read_items(kind: FieldType, source: Source, count: int, item: Any) -> list[Any]:
+    if kind.is_nested:
+        return [_read(item, source) for _ in range(count)]
+    if kind.item == "string":
+        return [source.text() for _ in range(count)]
+    return [*source.numbers(kind.item, count)]
+
+
 # ---- hashes
 
 @cache
 def type_hash(name: str, gid_bytes: int = 16) -> str:
     """RIHS01: SHA-256 of the type's description as JSON, with those of all types in it (REP 2011)."""
     known = definitions(gid_bytes)
+    if "/srv/" in name and name not in known:
+        known = known | service_definitions(name)
     inner: set[str] = set()
     _collect(name, known, inner)
     text = json.dumps({"type_description": _described(name, known),
                        "referenced_type_descriptions": [_described(each, known) for each in sorted(inner)]})
     return f"RIHS01_{hashlib.sha256(text.encode()).hexdigest()}"
+
+
+def service_definitions(name: str) -> dict[str, Fields]:
+    """A service as a type: request, response, and the event that introspection makes of a call (REP 2011)."""
+    request, response, event = (f"{name}_{part}" for part in ("Request", "Response", "Event"))
+    return {name: fields_of(f"{request} request_message, {response} response_message, {event} event_message"),
+            event: fields_of(f"service_msgs/msg/ServiceEventInfo info, {request}[<=1] request, "
+                             f"{response}[<=1] response"),
+            "service_msgs/msg/ServiceEventInfo": fields_of(
+                "uint8 event_type, builtin_interfaces/msg/Time stamp, uint8[16] client_gid, int64 sequence_number")}
 
 
 def _collect(name: str, known: dict[str, Fields], found: set[str]) -> None:

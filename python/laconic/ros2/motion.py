@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -35,13 +36,13 @@ class Seen:
     encoder_rad: np.ndarray                   # wheel angles as the encoders show them
     imu: tuple[float, float, float]           # acceleration ahead and left, yaw rate, in the IMU's axes
     supply: tuple[float, float] | None = None  # V, A
+    hinge_rad: Sequence[float] = ()           # angle of each hinge
+    hinge_rate_rad_per_s: Sequence[float] = ()
 
 
 class Motion(Protocol):
     """Robots that step together."""
 
-    rows: np.ndarray           # (N, 3)  true wheel speeds of a velocity of the body frame's origin
-    measured: np.ndarray       # (N,)    whether a wheel has an encoder
     steps: int
 
     def step(self, given: np.ndarray) -> list[tuple[int, Refused]]:
@@ -66,7 +67,7 @@ class Motion(Protocol):
         """What the ground could not give since the last question, in words; empty where nothing is wrong."""
 
 
-def motion_of(scene: Scene, robots: int) -> Motion:
+def motion_of(scene: Scene, robots: int) -> Singles | Lanes:
     """A batch where it can step the vehicles and nothing is lost, else one by one."""
     needs_own = scene.vehicle.get("ground") or scene.sensors.imu is not None or scene.sensors.encoder is not None
     if robots > 1 and not needs_own and not Vehicle.of(scene).has_friction:

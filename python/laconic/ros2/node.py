@@ -3,35 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
+from laconic.core.articulated import CARRIAGE
 from laconic.ros2.base import Base
-from laconic.ros2.messages import Packed, dds_name, new
+from laconic.ros2.messages import dds_name, new
 from laconic.ros2.motion import GRAVITY_M_PER_S2, Seen
-from laconic.ros2.wire import (
+from laconic.ros2.names import (
     LATCHED,
+    NANO,
+    SURE,
     TRANSFORMS,
     USUAL,
-    Node,
-    Participant,
+    Middleware,
+    OdometryOut,
+    Out,
     Quality,
+    RosNode,
+    between,
     polled,
     ros_type,
-    sent,
     topic_name,
+    transform,
+    upright,
 )
-from laconic.scene.base import usual_joints
 
+DRIVE_TOPICS = ("ackermann_cmd", "drive")  # of cars: those of VESC's stack and of f1tenth_gym_ros
+ACKERMANN = "ackermann_msgs/msg/AckermannDriveStamped"
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 POSE_STAMPED = "geometry_msgs/msg/PoseWithCovarianceStamped"
-ODOMETRY, TRANSFORM = "nav_msgs/msg/Odometry", "geometry_msgs/msg/TransformStamped"
 NODE_NAME = "laconic"
-SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and across, yaw rate, out of the plane
 OK, WARN, ERROR, STALE = range(4)   # levels of diagnostics
-NANO = 10**9
 KEPT_S = 0.25                       # of each topic, for peers that have lost a packet
+FURTHEST = 1e6                      # m of a pose
 LARGEST = 1e4                       # m/s or rad/s of a command
 
 # rcl_interfaces/msg/ParameterType
@@ -62,18 +69,19 @@ class Command:
     heard_s: float = -math.inf
     publisher: int = 0
     count: int = 0
+    topic: str = "cmd_vel"
     has_stopped: bool = True        # by the watchdog
 
 
 class RobotNode:
     """One robot of a base as a node."""
 
-    def __init__(self, participant: Participant, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
+    def __init__(self, participant: Middleware, base: Base, robot: int, *, namespace: str, frames: dict[str, str],
                  is_sim_time: bool, is_stamped: bool | None, has_map: bool, shares_tf: bool, told: Told, rate_Hz: float,
                  description: str | None = None,
                  has_services: bool = True):
         self.base, self.robot, self.told = base, robot, told
-        self.node: Node = participant.node(NODE_NAME, namespace)
+        self.node: RosNode = participant.node(NODE_NAME, namespace)
         prefix = f"{namespace.strip('/')}/" if shares_tf and namespace != "/" else ""
         self.frames = {name: frame if name == "map" else prefix + frame for name, frame in frames.items()}
         self.command, self.watchdog_s, self.heading_rad = Command(), base.table.watchdog_s, 0.0
@@ -82,28 +90,32 @@ class RobotNode:
         self.command_topic = topic_name("rt", namespace, "cmd_vel")
         self._commands = [self.node.subscription("cmd_vel", kind) for kind in kinds]
         self._command_types = kinds
+        self._drives = {topic: self.node.subscription(topic, ACKERMANN) for topic in DRIVE_TOPICS if base.is_car}
+        self._heard_types = {self.command_topic: kinds} | {
+            topic_name("rt", namespace, topic): [ACKERMANN] if base.is_car else [] for topic in DRIVE_TOPICS}
         self._poses = self.node.subscription("initialpose", POSE_STAMPED) if has_map else None
         self._stream = Quality(max(USUAL.depth, math.ceil(KEPT_S * rate_Hz)))
         tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
         slope_rad = base.scene.vehicle.get("ground", {}).get("slope_rad", 0.0)
         self._upward = GRAVITY_M_PER_S2 * math.cos(slope_rad)  # what the ground's support shows, across it
         self._left_out = 0
-        self._publish_all(tf, description)
+        self._publish_all(tf, description, prefix)
         if has_services:
             self._serve()
 
     # ---- publishers
 
-    def _publish_all(self, tf: tuple[str, str], description: str | None) -> None:
-        node, frames, wheels = self.node, self.frames, self.base.wheel_count
+    def _publish_all(self, tf: tuple[str, str], description: str | None, prefix: str) -> None:
+        node, frames = self.node, self.frames
         stream = self._stream
         self._odom = OdometryOut(node, "odom", frames["odom"], frames["base"], SURE, stream)
         self._truth = OdometryOut(node, "ground_truth/odom", frames["map"], frames["base"], 0.0, stream)
-        names = list(self.base.table.joint_names) or usual_joints(wheels)
-        self.joint_names = names
-        joints = new("sensor_msgs/msg/JointState", name=names, position=[0.0] * wheels, velocity=[0.0] * wheels)
+        self.joint_names = names = self.base.joint_names
+        zeros = [0.0] * len(names)
+        joints = new("sensor_msgs/msg/JointState", name=names, position=zeros, velocity=zeros)
         self._joints = Out(node, "joint_states", "sensor_msgs/msg/JointState", joints, stream)
-        self._angles, self._speeds = (self._joints.packed.slot(name, f"{wheels}d") for name in ("position", "velocity"))
+        self._angles, self._speeds = (self._joints.packed.slot(name, f"{len(names)}d")
+                                      for name in ("position", "velocity"))
         imu = new("sensor_msgs/msg/Imu")
         imu.header.frame_id = frames["imu"]
         self._imu = Out(node, "imu", "sensor_msgs/msg/Imu", imu, stream)
@@ -113,6 +125,8 @@ class RobotNode:
         links = [transform(frames["odom"], frames["base"])]
         if self.has_map:
             links.append(transform(frames["map"], frames["odom"]))
+        self._bodies = self._hung(description or "", prefix)
+        links += [transform(parent, child, x_m, y_m) for _, parent, child, x_m, y_m in self._bodies]
         self._tf = Out(node, tf[0], "tf2_msgs/msg/TFMessage", new("tf2_msgs/msg/TFMessage", transforms=links),
                        max(stream, TRANSFORMS, key=lambda each: each.depth),
                        stamps=[f"transforms[{number}].header.stamp" for number in range(len(links))])
@@ -132,6 +146,18 @@ class RobotNode:
             node.publisher("robot_description", "std_msgs/msg/String", LATCHED).write(
                 new("std_msgs/msg/String", data=description))
 
+    def _hung(self, description: str, prefix: str) -> list[tuple[int, str, str, float, float]]:
+        """Trailers and other bodies that tf shows: hinge, parent's frame, own frame, place. Those of joints that the
+        description has are left to robot_state_publisher."""
+        scene, found = self.base.scene, []
+        frames = {CARRIAGE: self.frames["base"], **{hinge.name: prefix + hinge.name for hinge in scene.hinges}}
+        joints = self.joint_names[len(self.joint_names) - len(scene.hinges) :]
+        for at, hinge in enumerate(scene.hinges):
+            if hinge.form in ("trailer", "body") and f'"{joints[at]}"' not in description:
+                body = scene.vehicle["body"][at]
+                found.append((at, frames[body["parent"]], frames[hinge.name], body["hinge_x_m"], body["hinge_y_m"]))
+        return found
+
     def _supply(self) -> Out:
         nothing = float("nan")
         message = new("sensor_msgs/msg/BatteryState", temperature=nothing, charge=nothing, capacity=nothing,
@@ -148,9 +174,11 @@ class RobotNode:
         self._link(0, here)
         if self.has_map:
             self._link(1, between(truth, here))
+        for number, body in enumerate(self._bodies, len(self._links) - len(self._bodies)):
+            self._links[number][1].put(*upright(seen.hinge_rad[body[0]]))
         self._tf.write(stamp)
-        self._angles.put(*seen.angle_rad)
-        self._speeds.put(*seen.speed_rad_per_s)
+        self._angles.put(*seen.angle_rad, *seen.hinge_rad)
+        self._speeds.put(*seen.speed_rad_per_s, *seen.hinge_rate_rad_per_s)
         self._joints.write(stamp)
         ahead, left, rate = seen.imu
         self.heading_rad += rate * period_s
@@ -179,6 +207,10 @@ class RobotNode:
             for message in polled(reader, lambda: self._tell(now_s, "unreadable", "a message on cmd_vel cannot be read "
                                                              "as its type and is ignored")):
                 self._obey(message.twist if kind == TWIST_STAMPED else message, message, now_s)
+        for topic, drives in self._drives.items():
+            text = f"a message on {topic} cannot be read as its type and is ignored"
+            for message in polled(drives, partial(self._tell, now_s, "unreadable", text)):
+                self._obey_drive(message, topic, now_s)
         if self._poses is not None:
             for message in polled(self._poses):
                 self._move(message.pose.pose, "initialpose", now_s)
@@ -186,7 +218,8 @@ class RobotNode:
         if not command.has_stopped and now_s - command.heard_s > self.watchdog_s:
             command.has_stopped = True
             if self.base.is_commanded(self.robot):
-                self._tell(now_s, "watchdog", f"cmd_vel was silent for {self.watchdog_s:g} s, so the robot stops")
+                self._tell(now_s, "watchdog", f"{command.topic} was silent for {self.watchdog_s:g} s, so the robot "
+                           "stops")
             self.base.command(self.robot, 0.0, 0.0, 0.0)
 
     def _obey(self, twist: Any, message: Any, now_s: float) -> None:
@@ -199,20 +232,41 @@ class RobotNode:
         if any(others):
             self._tell(now_s, "out of plane", "a command on cmd_vel has linear.z, angular.x or angular.y, which a "
                        "robot on the ground leaves out")
-        command, publisher = self.command, int(message.sample_info.publication_handle)
-        if command.publisher not in (0, publisher) and now_s - command.heard_s <= self.watchdog_s:
-            self._tell(now_s, "two commanders", "two publishers command cmd_vel at once; the last command counts, so "
-                       "stop one of them")
-        command.heard_s, command.publisher, command.has_stopped = now_s, publisher, False
-        command.count += 1
+        self._heard(message, "cmd_vel", now_s)
         for remark in self.base.command(self.robot, *wanted):
             self._tell(now_s, f"limited: {remark.partition(' ')[0]}", f"cmd_vel: {remark}")
+
+    def _obey_drive(self, message: Any, topic: str, now_s: float) -> None:
+        drive = message.drive
+        numbers = (drive.speed, drive.steering_angle, drive.acceleration, drive.steering_angle_velocity, drive.jerk)
+        if not all(abs(each) <= LARGEST for each in numbers) or abs(drive.steering_angle) >= math.pi / 2:
+            self._tell(now_s, "not finite", f"a command on {topic} has a number that is infinite, NaN or beyond "
+                       f"{LARGEST:g}, or an angle of a right angle or more, and is ignored; the last one holds "
+                       "until the watchdog")
+            return
+        if drive.jerk:
+            self._tell(now_s, "jerk", f"a command on {topic} limits the jerk, which the base leaves out")
+        self._heard(message, topic, now_s)
+        for remark in self.base.ackermann(self.robot, drive.speed, drive.steering_angle,
+                                          acceleration_m_per_s2=drive.acceleration,
+                                          steering_rad_per_s=drive.steering_angle_velocity):
+            self._tell(now_s, f"limited: {remark.partition(' of')[0]}", f"{topic}: {remark}")
+
+    def _heard(self, message: Any, topic: str, now_s: float) -> None:
+        """Notes a command that counts."""
+        command, publisher = self.command, int(message.sample_info.publication_handle)
+        if command.publisher not in (0, publisher) and now_s - command.heard_s <= self.watchdog_s:
+            self._tell(now_s, "two commanders", f"two publishers command {topic} at once; the last command counts, so "
+                       "stop one of them")
+        command.heard_s, command.publisher, command.has_stopped, command.topic = now_s, publisher, False, topic
+        command.count += 1
 
     def _move(self, pose: Any, who: str, now_s: float) -> bool:
         turn = pose.orientation
         numbers = (pose.position.x, pose.position.y, turn.x, turn.y, turn.z, turn.w)
-        if not all(map(math.isfinite, numbers)) or turn.z**2 + turn.w**2 < 1e-12:
-            self._tell(now_s, "bad pose", f"{who} has a pose that is not finite or has no yaw, and is ignored")
+        if not all(abs(each) <= FURTHEST for each in numbers) or turn.z**2 + turn.w**2 < 1e-12:  # NaN is not, either
+            self._tell(now_s, "bad pose", f"{who} has a pose that is infinite, NaN, beyond {FURTHEST:g} or without a "
+                       "yaw, and is ignored")
             return False
         yaw = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
         self.base.place(self.robot, pose.position.x, pose.position.y, yaw)
@@ -223,11 +277,17 @@ class RobotNode:
 
     def wrong_type(self, topic: str, kind: str, now_s: float) -> None:
         """A publisher has come; tells the user if its messages cannot be commands of this robot."""
-        types = [dds_name(each) for each in self._command_types]
-        if topic == self.command_topic and kind not in types:
-            names = " or ".join(each.rpartition("/")[2] for each in self._command_types)
-            self._tell(now_s, f"type {kind}", f"a publisher on cmd_vel sends {ros_type(kind)}, which is not heard; "
+        types = self._heard_types.get(topic)
+        if types is None or kind in map(dds_name, types):
+            return
+        own = topic.rpartition("/")[2]
+        names = " or ".join(each.rpartition("/")[2] for each in types)
+        if types:
+            self._tell(now_s, f"type {kind}", f"a publisher on {own} sends {ros_type(kind)}, which is not heard; "
                        f"send {names}")
+        elif kind == dds_name(ACKERMANN):
+            self._tell(now_s, f"type {kind}", f"a publisher on {own} sends {ros_type(kind)}, which is for cars with a "
+                       "fixed axle and steered wheels; send Twist on cmd_vel")
 
     def _tell(self, now_s: float, event: str, text: str) -> None:
         self.told.tell(now_s, f"{self.node.full_name}: {event}", f"{self.node.full_name}: {text}")
@@ -345,69 +405,6 @@ class RobotNode:
                    message=message, hardware_id=self.base.scene.name, values=pairs)
 
 
-class Out:
-    """A publisher of a packed message with a stamp."""
-
-    def __init__(self, node: Node, topic: str, kind: str, message: Any, quality: Quality = USUAL,
-                 stamps: Sequence[str] = ("header.stamp",)):
-        self.packed = Packed(kind, message)
-        self._writer, self._message = node.publisher(topic, kind, quality), self.packed.message
-        self._stamps = [self.packed.slot(path, "iI") for path in stamps]
-        self.left_out = 0
-
-    def write(self, stamp: tuple[int, int]) -> None:
-        """Sends it as it is now."""
-        for each in self._stamps:
-            each.put(*stamp)
-        self.left_out += not sent(self._writer, self._message)
-
-
-class OdometryOut:
-    """A publisher of nav_msgs/Odometry."""
-
-    def __init__(self, node: Node, topic: str, frame: str, child: str, variance: float, quality: Quality):
-        message = new(ODOMETRY, child_frame_id=child)
-        message.header.frame_id = frame
-        if variance:
-            for part in (message.pose, message.twist):
-                part.covariance[0::7] = [SURE, SURE, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, UNSURE]
-        self.out = Out(node, topic, ODOMETRY, message, quality)
-        self._place = self.out.packed.slot("pose.pose.position", "2d")
-        self._turn = self.out.packed.slot("pose.pose.orientation.z", "2d")
-        self._velocity = self.out.packed.slot("twist.twist.linear", "2d")
-        self._rate = self.out.packed.slot("twist.twist.angular.z", "d")
-
-    def write(self, stamp: tuple[int, int], pose: tuple[float, float, float],
-              velocity: tuple[float, float, float]) -> None:
-        """Sends a pose, and a velocity in the child's axes."""
-        self._place.put(pose[0], pose[1])
-        self._turn.put(*upright(pose[2]))
-        self._velocity.put(velocity[0], velocity[1])
-        self._rate.put(velocity[2])
-        self.out.write(stamp)
-
-
-def upright(yaw_rad: float) -> tuple[float, float]:
-    """z and w of the quaternion of a turn about the vertical; x and y are 0."""
-    return math.sin(0.5 * yaw_rad), math.cos(0.5 * yaw_rad)
-
-
-def transform(parent: str, child: str, x_m: float = 0.0, y_m: float = 0.0, yaw_rad: float = 0.0) -> Any:
-    """A TransformStamped at time 0."""
-    made = new(TRANSFORM, child_frame_id=child)
-    made.header.frame_id = parent
-    made.transform.translation.x, made.transform.translation.y = x_m, y_m
-    made.transform.rotation.z, made.transform.rotation.w = upright(yaw_rad)
-    return made
-
-
-def between(outer: tuple[float, float, float], inner: tuple[float, float, float]) -> tuple[float, float, float]:
-    """The pose of the second's frame in the first's, from one body's pose in both."""
-    yaw = outer[2] - inner[2]
-    sine, cosine = math.sin(yaw), math.cos(yaw)
-    return (outer[0] - cosine * inner[0] + sine * inner[1], outer[1] - sine * inner[0] - cosine * inner[1], yaw)
-
-
 def value_of(value: bool | float | str | None) -> Any:
     """A rcl_interfaces/msg/ParameterValue."""
     given: dict[str, Any] = {"type": NOT_SET}
@@ -425,10 +422,3 @@ def result(refusal: str, accept: Callable[[Any], None] = lambda _: None, paramet
     if not refusal:
         accept(parameter)
     return new("rcl_interfaces/msg/SetParametersResult", successful=not refusal, reason=refusal)
-
-
-def diagnostics(statuses: Iterable[Any], stamp_ns: int) -> Any:
-    """A diagnostic_msgs/DiagnosticArray."""
-    made = new("diagnostic_msgs/msg/DiagnosticArray", status=list(statuses))
-    made.header.stamp.sec, made.header.stamp.nanosec = divmod(stamp_ns, NANO)
-    return made

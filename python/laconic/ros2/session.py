@@ -18,10 +18,11 @@ from laconic.base.text_file import text_of_file
 from laconic.errors import BadInput, ResultFails
 from laconic.ros2 import FRAMES, USUAL_DISTRIBUTION
 from laconic.ros2.base import Base
+from laconic.ros2.hinged import base_of
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
-from laconic.ros2.node import NANO, Out, RobotNode, Told, diagnostics
-from laconic.ros2.wire import Participant, check_name, sent
+from laconic.ros2.names import NANO, Middleware, Out, check_name, diagnostics, sent
+from laconic.ros2.node import RobotNode, Told
 from laconic.scene import Scene
 from laconic.scene.scene_text import lines_of
 from laconic.scene.table import read_toml
@@ -51,8 +52,10 @@ class Ros2Options:
     speed: float = 1.0
     is_stamped: bool | None = None        # None: both kinds of command
     announces: bool = True
-    has_services: bool = True
+    services_for: Sequence[str] = ("cyclonedds", "fastrtps")  # clients' middlewares
     is_local: bool = False
+    router: str = "tcp/localhost:7447"
+    listen: str = ""
     shares_tf: bool = False
     frames: Sequence[str] = ()
     duration_s: float | None = None
@@ -95,7 +98,7 @@ class Session:
         self.scene, self.options, self.clock, self.say = scene, options, clock or Clock(), say
         self.period_s, self.steps = cycle_of(scene, options)
         check_options(options)
-        self.told, self.base = Told(say), Base(scene, options.robots)
+        self.told, self.base = Told(say), base_of(scene, options.robots)
         spread(self.base, options)
         self.base.record, self.base.is_recording = ([], True) if options.record else (None, False)
         self.refusals: dict[int, str] = {}
@@ -103,8 +106,7 @@ class Session:
         self.map = Map.read(options.map_file) if options.map_file else None
         self._parent, self._frames = check_name("--namespace", options.namespace), frames_of(options.frames)
         self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
-        self.participant = Participant(options.domain, options.distribution, is_local=options.is_local,
-                                       announces=options.announces)
+        self.participant = middleware_of(options)
         try:
             self._join()
         except BaseException:
@@ -132,7 +134,7 @@ class Session:
                          is_sim_time=options.is_sim_time, is_stamped=options.is_stamped,
                          has_map=options.is_loopback or self.map is not None, shares_tf=options.shares_tf,
                          told=self.told, rate_Hz=options.rate_Hz, description=text,
-                         has_services=options.has_services)
+                         has_services=bool(options.services_for))
         if text is not None and number == 0:
             lacking = [name for name in node.joint_names if f'"{name}"' not in text]
             if lacking:
@@ -185,6 +187,7 @@ class Session:
         if self._is_due("services", now_s, HOUSEKEEPING_S):
             for robot in self.robots:
                 robot.answer(now_s)
+            self.participant.answer()
             for number in [*self.refusals]:
                 if not self.base.motion.has_refused(number):  # it was reset or placed
                     del self.refusals[number]
@@ -257,6 +260,19 @@ class Session:
                 "skipped_s": self.lateness.skipped_s, **self.lateness.figures(),
                 "final": {"x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad},
                 "events": dict(self.told.counts)}
+
+
+def middleware_of(options: Ros2Options) -> Middleware:
+    """A participant of DDS, or a session of Zenoh; only that package must be there."""
+    if "zenoh" in options.services_for:
+        from laconic.ros2.zenoh import Context
+
+        return Context(options.domain, options.distribution, is_local=options.is_local, announces=options.announces,
+                       router=options.router, listen=options.listen)
+    from laconic.ros2.wire import Participant
+
+    return Participant(options.domain, options.distribution, is_local=options.is_local, announces=options.announces,
+                       middlewares=options.services_for)
 
 
 # ---- what can be checked beforehand
@@ -338,8 +354,8 @@ def recorded(session: Session, rows: np.ndarray) -> str:
     entries["run"] = {**{key: value for key, value in entries["run"].items() if key != "tolerance"},
                       "duration_s": len(rows) * step_s, "step_s": step_s, "method": session.scene.run.method,
                       "real": session.scene.run.real}
-    entries["input"] = [changes(f"{base.loop.signal}[{wheel + 1}]", rows[:, wheel], step_s)
-                        for wheel in range(rows.shape[1]) if rows[:, wheel].any()]
+    entries["input"] = [changes(signal, column, step_s) for signal, column in zip(base.signals, rows.T, strict=True)
+                        if column.any()]
     if (entries.get("outputs") or {}).get("every_s"):
         entries["outputs"]["every_s"] = step_s
     if not entries["input"]:

@@ -6,8 +6,7 @@ DDS is PyPI's cyclonedds. Everything is polled from one thread, so that a run do
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -23,12 +22,12 @@ from cyclonedds.util import duration
 
 from laconic.errors import BadInput
 from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION, WITHOUT_HASHES
-from laconic.ros2.messages import message_class, type_hash
+from laconic.ros2.messages import dds_name, message_class, type_hash
+from laconic.ros2.names import LATCHED, MOST_AT_ONCE, MOST_DOMAIN, USUAL, Quality, polled, sent, topic_name
+from laconic.ros2.rtps import Guid, Services
 
-MOST_DOMAIN = 232  # beyond it the ports of UDP end
-NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+HEADER_BYTES = 20  # of a request of rmw_cyclonedds: encapsulation, client and number
 MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
-MOST_AT_ONCE = 64  # messages of one reader in one poll
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
 </Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>
@@ -36,47 +35,32 @@ THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInte
 </CycloneDDS>"""
 """Discovery by unicast on this machine alone, as ROS 2 does for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
 
+BY_NAMES = """<CycloneDDS><Domain Id="any"><Compatibility><IgnoreTypeInformation>1.15</IgnoreTypeInformation>
+</Compatibility></Domain></CycloneDDS>"""
+"""Types of Fast DDS (vendor 1.15) are compared by their names, as ROS does. From version 3 on, with ROS 2 Kilted, it
+also describes them. cyclonedds cannot read its sequences and arrays, so that those endpoints would not match."""
+
 _DOMAINS: dict[int, Domain] = {}  # of this process, which may configure each of them once
 
 
-@dataclass(frozen=True)
-class Quality:
-    """Quality of service by ROS's names; writers offer RELIABLE, which matches every reader."""
-
-    depth: int = 10
-    is_latched: bool = False
-
-
-USUAL, LATCHED, TRANSFORMS = Quality(), Quality(depth=1, is_latched=True), Quality(depth=100)
-
-
-def check_name(option: str, name: str) -> str:
-    """A namespace or a name with a leading slash; BadInput for what ROS does not allow."""
-    parts = name.strip("/").split("/") if name.strip("/") else []
-    if "//" in name or not all(NAME.fullmatch(part) for part in parts):
-        raise BadInput(f"{option}: {name} is not a name of ROS; give letters, digits and _ that begin with a letter, "
-                       "such as robot1")
-    return "/" + "/".join(parts)
-
-
-def topic_name(prefix: str, namespace: str, topic: str, suffix: str = "") -> str:
-    """The DDS name of a topic or service: rt/robot1/odom; a name with a leading slash is not in the namespace."""
-    full = topic if topic.startswith("/") else f"{namespace.rstrip('/')}/{topic}"
-    return f"{prefix}{full}{suffix}"
+def settings(is_local: bool) -> str:
+    """What configures a domain: CYCLONEDDS_URI, and what we add."""
+    given = [] if is_local else [each for each in [os.environ.get("CYCLONEDDS_URI", "")] if each]
+    return ",".join([*given, *([THIS_MACHINE] if is_local else []), BY_NAMES])
 
 
 class Participant:
     """One DDS participant, the nodes in it, and their entry in the graph."""
 
     def __init__(self, domain: int, distribution: str = USUAL_DISTRIBUTION, *, is_local: bool = False,
-                 announces: bool = True):
+                 announces: bool = True, middlewares: Sequence[str] = ("cyclonedds",)):
         if not 0 <= domain <= MOST_DOMAIN:
             raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
         self.gid_bytes, self.domain = GID_BYTES[distribution], domain
         self.has_hashes, self.announces = distribution not in WITHOUT_HASHES, announces
         try:
-            if is_local and domain not in _DOMAINS:
-                _DOMAINS[domain] = Domain(domain, THIS_MACHINE)
+            if domain not in _DOMAINS:
+                _DOMAINS[domain] = Domain(domain, settings(is_local))
             self.dds = DomainParticipant(domain, qos=Qos(Policy.Userdata(b"enclave=/;")))
         except DDSException:
             raise BadInput(f"--domain: no participant can join domain {domain}; check the network and CYCLONEDDS_URI, "
@@ -89,6 +73,14 @@ class Participant:
         self._graph = self._endpoint(DataWriter, "ros_discovery_info", graph, LATCHED) if announces else None
         self._others = self._endpoint(DataReader, "ros_discovery_info", graph, Quality(100, is_latched=True))
         self._writers = BuiltinDataReader(self.dds, BuiltinTopicDcpsPublication)
+        self.others: Services | None = None  # for clients on Fast DDS and on cyclonedds
+        if "fastrtps" in middlewares:
+            try:
+                self.others = Services(domain, is_local=is_local)
+            except OSError:
+                self.close()
+                raise BadInput(f"--domain: domain {domain} has no free port for services; give another domain, or "
+                               "--rmw cyclonedds") from None
 
     def node(self, name: str, namespace: str = "/") -> Node:
         """Another node of this participant."""
@@ -121,16 +113,20 @@ class Participant:
             policies.append(Policy.WriterDataLifecycle(autodispose=False))
             if quality.is_latched:
                 policies.append(Policy.DurabilityService(0, history, -1, -1, -1))
-        user_data = of_service + (f"typehash={type_hash(message, self.gid_bytes)};" if self.has_hashes else "")
+        user_data = of_service + self.hash_of(message)
         if user_data:
             policies.append(Policy.Userdata(user_data.encode()))
         return Qos(*policies)
+
+    def hash_of(self, message: str) -> str:
+        """What an endpoint's user data says of its type."""
+        return f"typehash={type_hash(message, self.gid_bytes)};" if self.has_hashes else ""
 
     # ---- the graph
 
     def gid(self, entity: Any) -> Any:
         """The Gid of an entity."""
-        data = [*entity.guid.bytes] + [0] * (self.gid_bytes - 16)
+        data = [*(entity.bytes if isinstance(entity, Guid) else entity.guid.bytes)] + [0] * (self.gid_bytes - 16)
         return self.message("rmw_dds_common/msg/Gid", data=data)
 
     def announce(self) -> None:
@@ -139,10 +135,16 @@ class Participant:
             return
         nodes = [self.message(
             "rmw_dds_common/msg/NodeEntitiesInfo", node_namespace=node.namespace, node_name=node.name,
-            reader_gid_seq=[self.gid(each) for each in node.readers],
-            writer_gid_seq=[self.gid(each) for each in node.writers]) for node in self.nodes]
+            reader_gid_seq=[self.gid(each) for each in (*node.readers, *node.other_readers)],
+            writer_gid_seq=[self.gid(each) for each in (*node.writers, *node.other_writers)])
+            for node in self.nodes]
         sent(self._graph, self.message("rmw_dds_common/msg/ParticipantEntitiesInfo", gid=self.gid(self.dds),
                                        node_entities_info_seq=nodes))
+
+    def answer(self) -> None:
+        """Answers requests of clients on Fast DDS that have come."""
+        if self.others is not None:
+            self.others.poll()
 
     def namesakes(self) -> set[str]:
         """Full names of nodes that another participant has announced and that are ours, too."""
@@ -162,6 +164,9 @@ class Participant:
 
     def close(self) -> None:
         """Leaves the domain, so that peers know at once."""
+        if self.others is not None:
+            self.others.close()
+            self.others = None
         for entity in [*reversed(self._entities), self._writers, *self._topics.values(), self.dds]:
             entity.__del__()
         self._entities.clear()
@@ -184,6 +189,8 @@ class Node:
     readers: list[Any] = field(default_factory=list)
     writers: list[Any] = field(default_factory=list)
     services: list[Service] = field(default_factory=list)
+    other_readers: list[Guid] = field(default_factory=list)  # of the services for Fast DDS
+    other_writers: list[Guid] = field(default_factory=list)
 
     @property
     def full_name(self) -> str:
@@ -210,63 +217,52 @@ class Node:
 
 
 class Service:
-    """Requests in, responses out, as rmw_cyclonedds has them: client and number stand before the content.
+    """Requests in, responses out.
 
-    rmw_fastrtps has both in the headers of its packets, which cyclonedds does not give to programs, so that clients of
-    it wait in vain. ROS 2 does not promise services between different middlewares either.
+    For rmw_cyclonedds client and number stand before the content. rmw_fastrtps has them in the headers of its packets,
+    which cyclonedds does not give to programs, so that `Services` answers both.
     """
 
     def __init__(self, node: Node, name: str, kind: str, answer: Callable[[Any], Any]):
         self.name, self.answer = name, answer
         self._request, self._response = f"{kind}_Request", f"{kind}_Response"
         participant, pair = node.participant, f"serviceid={os.urandom(8).hex()};"
-        reader = topic_name("rq", node.namespace, name, "Request")
-        writer = topic_name("rr", node.namespace, name, "Reply")
-        make = partial(participant._endpoint, quality=USUAL, of_service=pair)
-        self.reader, self.writer = make(DataReader, reader, self._request), make(DataWriter, writer, self._response)
+        topics = topic_name("rq", node.namespace, name, "Request"), topic_name("rr", node.namespace, name, "Reply")
+        self.reader = self.writer = None
+        self.unreadable = 0
+        if participant.others is None:
+            make = partial(participant._endpoint, quality=USUAL, of_service=pair)
+            self.reader = make(DataReader, topics[0], self._request)
+            self.writer = make(DataWriter, topics[1], self._response)
+            node.readers.append(self.reader)
+            node.writers.append(self.writer)
         self._respond = message_class(self._response, participant.gid_bytes, True)
-        node.readers.append(self.reader)
-        node.writers.append(self.writer)
+        if participant.others is not None:
+            request, response = ((topic, dds_name(each), pair + participant.hash_of(each))
+                                 for topic, each in zip(topics, (self._request, self._response), strict=True))
+            reader, writer = participant.others.serve(request, response, self._answered)
+            node.other_readers.append(reader)
+            node.other_writers.append(writer)
+
+    def _answered(self, request: bytes, has_header: bool) -> bytes | None:
+        """The CDR of a response to that of a request; None for one that cannot be read. `has_header`: of cyclonedds."""
+        start, whose = (HEADER_BYTES, request[4:HEADER_BYTES]) if has_header else (4, b"")
+        try:
+            values = self.answer(message_class(self._request).deserialize(request[:4] + request[start:]))
+        except Exception:  # whatever cyclonedds raises for bytes that are not this type
+            self.unreadable += 1
+            return None
+        made = bytes(message_class(self._response)(**values).serialize(use_version_2=False))
+        return made[:4] + whose + made[4:]
 
     def poll(self, wrong: Callable[[str], None]) -> int:
         """Answers what has come, and returns how many requests that were."""
-        count = 0
-        for request in polled(self.reader, lambda: wrong(f"{self.name}: a request that cannot be read is ignored")):
+        text = f"{self.name}: a request that cannot be read is ignored"
+        for _ in range(self.unreadable):
+            wrong(text)
+        self.unreadable, count = 0, 0
+        for request in polled(self.reader, lambda: wrong(text)) if self.reader is not None else ():
             values = self.answer(request)
             sent(self.writer, self._respond(client=request.client, sequence=request.sequence, **values))
             count += 1
         return count
-
-
-def polled(reader: Any, wrong: Callable[[], None] = lambda: None, most: int = MOST_AT_ONCE) -> list[Any]:
-    """What has come since the last poll, at most so many; calls `wrong` for each message that cannot be read."""
-    found = []
-    for _ in range(most):
-        try:
-            taken = reader.take(N=1)
-        except DDSException:
-            break
-        except Exception:  # whatever cyclonedds raises for bytes that are not this type
-            wrong()
-            continue
-        if not taken:
-            break
-        if hasattr(taken[0], "__idl__"):  # no news of a writer that has gone
-            found.append(taken[0])
-    return found
-
-
-def sent(writer: Any, message: Any) -> bool:
-    """Writes a message; False where a reader does not keep up, so that the message is left out."""
-    try:
-        writer.write(message)
-    except DDSException:
-        return False
-    return True
-
-
-def ros_type(name: str) -> str:
-    """The ROS name of a type on the wire; as it is where it is not ROS's."""
-    parts = name.split("::")
-    is_ros = len(parts) == 4 and parts[2] == "dds_" and parts[3].endswith("_")
-    return f"{parts[0]}/{parts[1]}/{parts[3][:-1]}" if is_ros else name

@@ -13,6 +13,7 @@ from laconic.scene.keys import key_of, read_number
 from laconic.scene.table import Table
 
 OF_VOLTAGE = ("gain_Vs_per_rad", "integral_gain_V_per_rad", "voltage_limit_V")
+OF_STEERING = ("steering_rate_limit_rad_per_s", "steering_voltage_limit_V")
 OF_TORQUE = ("gain_Nms_per_rad", "integral_gain_Nm_per_rad", "torque_limit_Nm")
 
 
@@ -30,10 +31,12 @@ class BaseTable:
     yaw_rate_limit_rad_per_s: float | None = None
     acceleration_limit_m_per_s2: float | None = None
     yaw_acceleration_limit_rad_per_s2: float | None = None
+    steering_rate_limit_rad_per_s: float | None = None
+    steering_voltage_limit_V: float | None = None  # noqa: N815
     watchdog_s: float = 0.5
     believed_size: float = 1.0
     believed_radius_m: tuple[float, ...] = ()      # one for each wheel; empty: as they are
-    joint_names: tuple[str, ...] = ()              # one for each wheel
+    joint_names: tuple[str, ...] = ()              # one for each wheel, and then for each hinge or none of them
 
 
 def read_base(table: Table, vehicle: Mapping[str, Any]) -> BaseTable:
@@ -42,9 +45,13 @@ def read_base(table: Table, vehicle: Mapping[str, Any]) -> BaseTable:
     if not wheels:
         table.fail("watchdog_s", "a base drives wheels, and the vehicle has none; take [base] out")
     _check_actuator(table, vehicle)
+    for name in () if vehicle.get("body") else OF_STEERING:
+        if table.peek(name) is not None:
+            table.fail(name, "has no effect: no wheel of this vehicle is steered; take it out")
     lists = ("believed_radius_m", "joint_names")
     numbers = {each.name: read_number(table, each.name) for each in fields(BaseTable) if each.name not in lists}
-    found = BaseTable(**numbers, believed_radius_m=_radii(table, wheels), joint_names=_names(table, wheels))
+    found = BaseTable(**numbers, believed_radius_m=_radii(table, wheels),
+                      joint_names=_names(table, wheels, len(vehicle.get("body", ()))))
     table.done()
     return found
 
@@ -80,8 +87,9 @@ def _radii(table: Table, wheels: int) -> tuple[float, ...]:
     return many
 
 
-def _names(table: Table, wheels: int) -> tuple[str, ...]:
+def _names(table: Table, wheels: int, hinges: int) -> tuple[str, ...]:
     names = table.texts("joint_names", ())
-    if names and (len(names) != wheels or len(set(names)) != wheels or not all(names)):
-        table.fail("joint_names", f"needs a name of its own for each of the {wheels} wheels; give {wheels} names")
+    if names and (len(names) not in (wheels, wheels + hinges) or len(set(names)) != len(names) or not all(names)):
+        both = f", or {wheels + hinges} with the hinges" if hinges else ""
+        table.fail("joint_names", f"needs a name of its own for each of the {wheels} wheels; give {wheels} names{both}")
     return names

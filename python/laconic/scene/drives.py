@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from laconic.scene.hinges import Hinge
 from laconic.scene.keys import DRIVE_NUMBERS, PROTOCOLS, key_of, read_choice, read_number
 from laconic.scene.table import Table
 
@@ -25,21 +26,28 @@ DIVISORS = {"gear_ratio": (1e-6, 1e6), "torque_constant_Nm_per_A": (1e-9, 1e9)} 
 
 @dataclass(frozen=True)
 class Drives:
-    """What `[rig.drives]` gives: tuples with one entry for each wheel, 0 for wheels without a drive."""
+    """What `[rig.drives]` gives: tuples with one entry for each wheel, then for each hinge; 0 for those without a
+    drive."""
 
     protocol: str | None = None
-    driven: tuple[bool, ...] = ()             # whether a wheel has a drive
+    driven: tuple[bool, ...] = ()             # whether a wheel, or a hinge behind them, has a drive
     node_ids: tuple[int, ...] | None = None
     watchdog_s: float | None = None           # None: the protocol's own
     numbers: dict[str, tuple[float, ...]] = field(default_factory=dict)  # by key, only those that are given
 
 
-def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]]) -> Drives:
-    """`[rig.drives]` of a vehicle with these wheels; a wheel with driven = false has no drive."""
+def axes_with_motors(wheels: Sequence[Mapping[str, Any]], hinges: Sequence[Hinge]) -> list[bool]:
+    """Which wheels, and then which hinges, have a motor that a drive can replace."""
+    return [*(bool(wheel.get("driven", True)) for wheel in wheels),
+            *(hinge.kind in ("motor", "prescribed") for hinge in hinges)]
+
+
+def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]], hinges: Sequence[Hinge] = ()) -> Drives:
+    """`[rig.drives]` of a vehicle with these wheels and hinges; a wheel with driven = false has no drive."""
     if not wheels:
         table.fail("protocol", "drives turn wheels, and the vehicle has none; take [rig.drives] out")
     protocol = read_choice(table, "protocol")
-    driven, node_ids = _node_ids(table, [bool(wheel.get("driven", True)) for wheel in wheels])
+    driven, node_ids = _node_ids(table, axes_with_motors(wheels, hinges), len(wheels))
     numbers = {key: _numbers(table, key, driven) for key in NUMBERS if table.has(key)}
     watchdog_s = read_number(table, "watchdog_s")
     if watchdog_s is not None and watchdog_s > LONGEST_WATCHDOG_S:
@@ -48,7 +56,8 @@ def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]]) -> Drives:
     return Drives(protocol, driven, node_ids, watchdog_s, numbers)
 
 
-def _node_ids(table: Table, driven: list[bool]) -> tuple[tuple[bool, ...], tuple[int, ...] | None]:
+def _node_ids(table: Table, driven: list[bool], wheel_count: int
+              ) -> tuple[tuple[bool, ...], tuple[int, ...] | None]:
     """Which wheels have a drive, and its node id; in a list as long as the wheels `false` stands for none."""
     if not table.has("node_ids"):
         return tuple(driven), None
@@ -57,18 +66,25 @@ def _node_ids(table: Table, driven: list[bool]) -> tuple[tuple[bool, ...], tuple
         rest = iter(given)
         given = [next(rest) if has_motor else NO_DRIVE for has_motor in driven]
     if len(given) != len(driven):
-        table.fail("node_ids", f"has {len(given)} entries; give one for each of the {len(driven)} wheels, false for a "
-                   "wheel without a drive")
+        table.fail("node_ids", f"has {len(given)} entries; give one for each of the {wheel_count} wheels"
+                   f"{_then_hinges(len(driven) - wheel_count)}, false for a wheel without a drive")
     for number, (node_id, has_motor) in enumerate(zip(given, driven, strict=True), start=1):
         if node_id is not NO_DRIVE and (isinstance(node_id, bool) or not isinstance(node_id, int)):
             table.fail("node_ids", f"holds {str(node_id).lower()}; give whole numbers, or false for a wheel without a "
                        "drive")
+        if node_id is not NO_DRIVE and not has_motor and number > wheel_count:
+            table.fail("node_ids", f"gives hinge {number - wheel_count} a drive, and it is neither a motor nor "
+                       "prescribed; give false there")
         if node_id is not NO_DRIVE and not has_motor:
             table.fail("node_ids", f"gives wheel {number} a drive, which has driven = false; give false there")
     has_drive = tuple(node_id is not NO_DRIVE for node_id in given)
     if not any(has_drive):
         table.fail("node_ids", "gives no wheel a drive; give at least one node id")
     return has_drive, tuple(0 if node_id is NO_DRIVE else node_id for node_id in given)
+
+
+def _then_hinges(count: int) -> str:
+    return f", then of the {count} hinges" if count else ""
 
 
 def _numbers(table: Table, key: str, driven: tuple[bool, ...]) -> tuple[float, ...]:

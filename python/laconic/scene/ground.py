@@ -34,6 +34,11 @@ def slips(vehicle: Mapping[str, Any]) -> bool:
 def check_ideal_ground(scene: Scene, command: str, instead: str = "") -> None:
     """BadInput where a command that treats (4.7) gets a vehicle with friction or limits of its drives."""
     check_without_hinges(scene, f"laconic {command}")
+    check_rolling(scene, command, instead)
+
+
+def check_rolling(scene: Scene, command: str, instead: str = "") -> None:
+    """BadInput for friction or limits of drives, with hinges or without."""
     if has_friction(scene.vehicle):
         raise BadInput(f"{scene.path}: laconic {command} treats ideal ground and motors without limits; give a scene "
                        f"without friction in [ground], without [vehicle.drive] and motor_circuit{instead}")

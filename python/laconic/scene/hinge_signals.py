@@ -110,11 +110,16 @@ def output_signals_of(vehicle: Mapping[str, Any], hinges: Sequence[Hinge]) -> di
     return {name: signals for name, signals in found.items() if name not in NOT_SLIPPING}
 
 
-def check_hinge_signal(table: Table, key: str, signal: str, known: Mapping[str, str]) -> None:
+def check_hinge_signal(table: Table, key: str, signal: str, known: Mapping[str, str],
+                       hinges: Sequence[Hinge] = ()) -> None:
     """Fails for a signal that this vehicle does not have, with the reason; `known`: signal → its name."""
     if signal in known:
         return
-    name = signal.partition("[")[0]
+    name, _, item = signal.partition("[")
+    coordinated = [hinge.name for hinge in hinges if hinge.kind == "coordinated"]
+    if name in (ANGLE, RATE) and item[:-1] in coordinated:
+        table.fail(key, f"{signal}: {item[:-1]} is coordinated, and all such wheels are steered together; give one of "
+                   f"{CURVATURE}, {ANGLE} (without a name) and {TWIST}, or make it \"prescribed\"")
     if name in PER_WHEEL:
         table.fail(key, no_such_wheel(signal, name, sum(1 for each in known.values() if each == name)))
     if name in HINGE_INPUTS and name not in HINGE_OUTPUTS:

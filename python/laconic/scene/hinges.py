@@ -43,6 +43,10 @@ STEERED_ALONE = ("name", "scrub_m", "mass_kg", "yaw_inertia_kgm2", "steering_gai
                  "start_angle_deg", "start_rate_rad_per_s", "rate_limit_rad_per_s", "at_limit", "steering_motor",
                  *OF_HINGES, *OF_SERVOS, *OF_LOOPS, PERIOD)
 """Keys of a wheel that mean nothing unless it is steered."""
+WITHOUT_HINGES = ("give a rigid vehicle, with [[vehicle.support]] in the place of casters and steered wheels, as "
+                  "laconic import --no-hinges writes it")
+MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
+              "rotor_inertia_kgm2")
 COMMANDED = ("prescribed", "coordinated")
 LIMITED = (*COMMANDED, "servo")
 OF_WHOLE_HINGES = ("twist zero", "twist jumps", "massless hinge", "coordinated too few", "steered too often",
@@ -64,6 +68,7 @@ class Hinge:
     start_angle_rad: float = 0.0
     start_rate_rad_per_s: float = 0.0
     follows: str = ""  # where wheels slip: what of it a servo or loop takes a command of, "angle" or "rate"
+    motor: tuple[tuple[str, float], ...] = ()  # the numbers of its motor's table, where it is given at its shaft
 
     @property
     def has_stops(self) -> bool:
@@ -128,7 +133,7 @@ def check_without_hinges(scene: Scene, command: str) -> None:
     """BadInput where something that knows rigid vehicles alone gets one with hinges."""
     if scene.has_hinges:
         raise BadInput(f"{scene.path}: {scene.hinges[0].place}: {command} does not take vehicles with hinges yet; use "
-                       "laconic simulate")
+                       f"laconic simulate, or {WITHOUT_HINGES}")
 
 
 def read_hinges(table: Table, wheels: Sequence[tuple[Table, dict[str, Any]]], slips: bool) -> Hung:
@@ -177,7 +182,8 @@ def _steered(table: Table, wheel: dict[str, Any], number: int, slips: bool) -> _
     body = {"name": hinge.name, "parent": wheel.get("body", CARRIAGE), "hinge": kind, "hinge_x_m": wheel["x_m"],
             "hinge_y_m": wheel["y_m"], "mass_kg": read_number(table, "mass_kg"),
             "yaw_inertia_kgm2": read_number(table, "yaw_inertia_kgm2")}
-    body |= _motor(table, kind, "steering_motor", "steering_gain_Nm_per_V", "steering_damping_Nms", body, slips)
+    turned, motor = _motor(table, kind, "steering_motor", "steering_gain_Nm_per_V", "steering_damping_Nms", body, slips)
+    body, hinge = body | turned, replace(hinge, motor=motor)
     wheel |= {"x_m": 0.0, "y_m": read_number(table, "scrub_m"), "body": hinge.name}
     return _turned(_Part(table, body, hinge, []), slips)
 
@@ -205,6 +211,7 @@ def _free_part(table: Table, hinge: Hinge, body: dict[str, Any], behind_m: float
     if slips and not inertia:
         table.fail("wheel_inertia_kgm2", "is 0, and a wheel that may slip has a speed of its own; give a value above 0")
     com = read_number(table, "com_x_m")
+    _check_mass(table, com)
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": "free", **body,
             "com_x_m": -behind_m if com is None else com,
             **{key: read_number(table, key) for key in ("mass_kg", "yaw_inertia_kgm2", "damping_Nms")}}
@@ -215,6 +222,13 @@ def _free_part(table: Table, hinge: Hinge, body: dict[str, Any], behind_m: float
     return _turned(_Part(table, body, hinge, wheels), slips)
 
 
+def _check_mass(table: Table, *places_m: float | None) -> None:
+    """Fails for a centre of mass of a body that has none."""
+    for key, place in zip(("com_x_m", "com_y_m"), places_m, strict=False):
+        if place and not read_number(table, "mass_kg"):
+            table.fail(key, "has no effect on a body without mass; give mass_kg, or take it out")
+
+
 def _general(table: Table, slips: bool) -> _Part:
     kind = read_choice(table, "hinge")
     kind = "servo" if slips and kind == "free" and table.peek("servo_gain_Nm_per_rad") else kind
@@ -222,7 +236,9 @@ def _general(table: Table, slips: bool) -> _Part:
     numbers = ("hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "stiffness_Nm")
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": kind,
             **{key: read_number(table, key) for key in numbers}, "rest_rad": table.angle("rest", 0.0)}
-    body |= _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body, slips)
+    _check_mass(table, body["com_x_m"], body["com_y_m"])
+    turned, motor = _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body, slips)
+    body, hinge = body | turned, replace(hinge, motor=motor)
     if hinge.is_commanded:
         for key in ("damping_Nms", "stiffness_Nm"):
             if body.get(key):
@@ -236,30 +252,30 @@ def _general(table: Table, slips: bool) -> _Part:
 
 
 def _motor(table: Table, kind: str, motor_key: str, gain: str, damping: str, body: Mapping[str, Any],
-           slips: bool) -> dict[str, float]:
-    """Gain, damping and inertia of a hinge: given directly, or those of a motor at its shaft."""
+           slips: bool) -> tuple[dict[str, float], tuple[tuple[str, float], ...]]:
+    """Gain, damping and inertia of a hinge: given directly, or those of a motor at its shaft; and that motor."""
     direct = {"gain_Nm_per_V": read_number(table, gain), "damping_Nms": read_number(table, damping)}
     if kind != "motor":
         for key in (gain, motor_key):
             if table.peek(key):
                 table.fail(key, f'is given for a hinge that is "{kind}"; take it out, or make the hinge "motor"')
-        return direct
+        return direct, ()
     if not table.has(motor_key):
         if not direct["gain_Nm_per_V"]:
             table.fail(gain, f"is missing; give it, or a table {motor_key}, for a hinge with a motor")
-        return direct
+        return direct, ()
     for key in (gain, damping):
         if table.peek(key) is not None:
             table.fail(key, f"is given besides {motor_key}; keep one of them")
     motor = table.table(motor_key)
-    resistance, torque, emf, ratio, friction, rotor = (read_number(motor, key) for key in (
-        "resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
-        "rotor_inertia_kgm2"))
+    numbers = {key: read_number(motor, key) for key in MOTOR_KEYS}
+    resistance, torque, emf, ratio, friction, rotor = numbers.values()
     further = of_motor(motor, slips)
     motor.done()
-    return further | {"gain_Nm_per_V": ratio * torque / resistance,
-            "damping_Nms": ratio * ratio * (torque * emf / resistance + friction),
-            "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio * ratio * rotor}
+    turned = further | {"gain_Nm_per_V": ratio * torque / resistance,
+              "damping_Nms": ratio * ratio * (torque * emf / resistance + friction),
+              "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio * ratio * rotor}
+    return turned, tuple(numbers.items())
 
 
 def _turned(part: _Part, slips: bool) -> _Part:
@@ -323,7 +339,9 @@ def _hinge(table: Table, name: str, kind: str, slips: bool) -> Hinge:
 
 
 def check_not_steered(table: Table) -> None:
-    """Fails for keys of a wheel that mean nothing unless it is steered."""
+    """Fails for keys of a wheel that mean nothing unless it is steered, and for one that was to steer it."""
+    if typed := table.mistyped("steered"):
+        table.fail(typed, "is no known key here; did you mean steered?")
     for key in STEERED_ALONE:
         if table.peek(key) is not None:
             table.fail(key, "has a meaning for a steered wheel alone; give steered, or take it out")
@@ -342,10 +360,14 @@ def _parents_first(parts: Sequence[_Part]) -> list[_Part]:
     """The same in an order in which each parent comes before its bodies; else as they are in the file."""
     names = [CARRIAGE, *(part.hinge.name for part in parts)]
     for part in parts:
+        key = "body" if part.hinge.form == "wheel" else "parent"
         if part.body["parent"] not in names:
-            key = "body" if part.hinge.form == "wheel" else "parent"
+            others = [name for name in names if name != part.hinge.name]
             part.table.fail(key, f"there is no body {shown(part.body['parent'])}; "
-                            f"{nearest_of(part.body['parent'], names)}")
+                            f"{nearest_of(part.body['parent'], others)}")
+        if part.body["parent"] == part.hinge.name:
+            part.table.fail(key, f"is {shown(part.hinge.name)}, the body itself; let it hang on another body, or on "
+                            "the carriage")
     placed, found, left = {CARRIAGE}, list[_Part](), list(parts)
     while left:
         ready = next((part for part in left if part.body["parent"] in placed), None)

@@ -25,7 +25,7 @@ from laconic.scene.hinge_signals import (
     output_signals_of,
     read_hinge_signals,
 )
-from laconic.scene.hinges import ROLLS_FORWARD_RAD, SHORT_FORMS, Hung, check_not_steered, has_hinges, read_hinges
+from laconic.scene.hinges import ROLLS_FORWARD_RAD, SHORT_FORMS, Hinge, Hung, check_not_steered, has_hinges, read_hinges
 from laconic.scene.inputs import Input
 from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
@@ -79,11 +79,11 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     vehicle, hinges = parts["vehicle"], hung.hinges
     check_ideal(top, vehicle, hung.wheel_places)
     known = {signal: name for name, of_name in input_signals(vehicle, hinges).items() for signal in of_name}
-    parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known) for each in top.tables("input")]
+    parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known, hinges) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods_with_hinges(vehicle), reals)
-    if parts["run"].get("tolerance") is not None:
-        top.fail("run.step_s", '"auto" is not found for vehicles with hinges yet; give a step in seconds, such as '
-                 "0.001")
+    if parts["run"].get("tolerance") is not None and slips(vehicle):
+        top.fail("run.step_s", '"auto" is not found for hinges on ground with friction yet; give a step in seconds, '
+                 "such as 0.001")
     check_places(top, parts["inputs"])
     for each in parts["inputs"]:
         check_input(top, each, vehicle, parts["run"]["duration_s"])
@@ -94,10 +94,9 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     outputs = top.table("outputs")
     signals = read_hinge_signals(outputs, output_signals_of(vehicle, hinges))
     parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
-    if top.has("base"):
-        top.fail("base", "is for laconic ros2, which does not take vehicles with hinges yet; take the table out")
-    parts["sensors"], parts["base"] = NO_SENSORS, None
-    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"])
+    parts["base"] = read_base(top.table("base"), vehicle) if top.has("base") else None
+    parts["sensors"] = NO_SENSORS
+    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges)
     top.done()
     return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
 
@@ -180,6 +179,8 @@ def read_wheel(table: Table, slipping: bool = False, is_hung: bool = False) -> d
     kind = read_choice(table, "kind", hints=KINDS_OF_WHEELS)
     wheel: dict[str, Any] = {"kind": kind, **read_position(table)}
     steered, body = read_choice(table, "steered"), table.text("body", None)
+    if not steered:
+        check_not_steered(table)
     fields = {field.key: field for field in load().fields_of("vehicle.wheel[#]") if field.key not in wheel}
     roller = fields.pop("roller_rad")
     straight = {"axle_rad": ROLLS_FORWARD_RAD} if steered else {}
@@ -196,7 +197,6 @@ def read_wheel(table: Table, slipping: bool = False, is_hung: bool = False) -> d
     wheel |= {"steered": steered} if steered else {}
     wheel |= {"body": body} if body not in (None, CARRIAGE) else {}
     if not steered:
-        check_not_steered(table)
         table.done(OF_WHEELS)
     return wheel
 
@@ -258,13 +258,14 @@ def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], p
     table.fail(key, f"there is no signal {shown(signal)}; {nearest_of(signal, known)}")
 
 
-def read_input(table: Table, wheel_count: int, known: Mapping[str, str] | None = None) -> Input:
-    """One `[[input]]`; `known`: the signals of a vehicle with hinges."""
+def read_input(table: Table, wheel_count: int, known: Mapping[str, str] | None = None,
+               hinges: Sequence[Hinge] = ()) -> Input:
+    """One `[[input]]`; `known`: the signals of a vehicle with these hinges."""
     signal, kind = table.text("signal"), read_choice(table, "kind")
     if known is None:
         check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
     else:
-        check_hinge_signal(table, "signal", signal, known)
+        check_hinge_signal(table, "signal", signal, known, hinges)
     if kind == "sine":
         phase = table.angle("phase", 0.0)
         found = Input(signal, kind, table.location, amplitude=read_number(table, "amplitude"),
@@ -354,12 +355,12 @@ def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str]
     return tuple(signals)
 
 
-def read_rig(table: Table, wheels: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def read_rig(table: Table, wheels: Sequence[dict[str, Any]], hinges: Sequence[Hinge] = ()) -> dict[str, Any]:
     """`[rig]`: the first CAN identifier, the frames to use, and the drives of a vehicle that is played."""
     id_base = table.whole("id_base", None)
     if id_base is not None and not 0 <= id_base <= 0x7FF:
         table.fail("id_base", f"is {id_base}; give an 11-bit identifier, 0 to 0x7FF")
     frames = table.texts("frames", ())
-    drives = read_drives(table.table("drives"), wheels) if table.has("drives") else None
+    drives = read_drives(table.table("drives"), wheels, hinges) if table.has("drives") else None
     table.done()
     return {"id_base": id_base, "frames": frames, "drives": drives}

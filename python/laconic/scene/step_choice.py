@@ -7,7 +7,7 @@ by the core's error estimate. What is found is a number like one in the file: ru
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -19,15 +19,21 @@ from laconic.errors import BadInput, Refused
 
 if TYPE_CHECKING:
     from laconic.scene.scene import Scene
+    from laconic.simulation.articulated import HingeErrors
 
 AUTO = "auto"
 LARGEST_TOLERANCE = 1.0
 LONGEST_S = 1.0
 CHUNK = 1 << 18         # steps between two checks for Ctrl-C
 IMPROVES = 0.7          # a finer step errs by less than this share of the best
+ROWS = 100              # of the errors of a pilot with hinges
+ROUNDING = 1e-11        # in such a run
+MOST_WITH_HINGES = 100_000  # steps
 MOST_STEPS = 2_000_000  # of a pilot: some seconds
 DIGITS = ("5", "2", "1")
 UNITS = dict(zip(NAMES, ("rad/s of ν", "m of the place", "rad of the heading", "rad of a wheel"), strict=True))
+UNITS |= {"velocity_m_per_s": "m/s of the velocity", "yaw_rate_rad_per_s": "rad/s of the yaw rate",
+          "hinge_rate_rad_per_s": "rad/s of a hinge", "hinge_angle_rad": "rad of a hinge"}
 
 
 @dataclass(frozen=True)
@@ -35,24 +41,24 @@ class Pilot:
     """One run of a pilot: the largest estimated error of each kind, and where it ended."""
 
     step_s: float
-    errors: Errors
+    errors: Errors | HingeErrors
     end: np.ndarray
 
     def worst(self) -> tuple[float, str]:
         """The largest of the errors, and what it is of."""
-        return max((getattr(self.errors.largest, name), UNITS[name]) for name in NAMES)
+        return max((error, UNITS[name]) for name, error in asdict(self.errors.largest).items())
 
     def apart(self, other: Pilot) -> float:
         """How far the ends of two are from each other."""
         return float(np.max(np.abs(self.end - other.end)))
 
 
-def candidates(duration_s: float) -> Iterator[float]:
+def candidates(duration_s: float, most_steps: int = MOST_STEPS) -> Iterator[float]:
     """The grid, from the largest step down."""
     for exponent in range(0, -9, -1):
         for digit in DIGITS:
             step_s = float(f"{digit}e{exponent}")
-            if step_s <= min(LONGEST_S, duration_s) and duration_s / step_s <= MOST_STEPS:
+            if step_s <= min(LONGEST_S, duration_s) and duration_s / step_s <= most_steps:
                 yield step_s
 
 
@@ -85,7 +91,7 @@ def largest_step_s(scene: Scene, tolerance: float) -> float:
     """The largest step of the grid that keeps the tolerance; BadInput where none does, with the least error found."""
     best: Pilot | None = None
     last: BadInput | None = None
-    steps = list(candidates(scene.run.duration_s))
+    steps = list(candidates(scene.run.duration_s, MOST_WITH_HINGES if scene.has_hinges else MOST_STEPS))
     with progress_bar(f"{scene.name}: a step for the tolerance {tolerance:g}", len(steps)) as moved:
         for step_s in steps:
             moved(1)
@@ -104,7 +110,9 @@ def largest_step_s(scene: Scene, tolerance: float) -> float:
 
 
 def rounding_of(pilot: Pilot) -> float:
-    """What of the errors no step makes smaller."""
+    """What of the errors no step makes smaller; a guess where it is not known apart from the rest."""
+    if not isinstance(pilot.errors, Errors):
+        return ROUNDING
     return max(getattr(pilot.errors.rounding, name) for name in NAMES)
 
 
@@ -122,6 +130,8 @@ def without_step(scene: Scene, tolerance: float, best: Pilot | None, last: BadIn
 def run_pilot(scene: Scene, step_s: float) -> Pilot:
     """The scene's run in one step size; BadInput where it does not fit, or a step is refused."""
     run = scene.with_step(step_s)
+    if scene.has_hinges:
+        return run_hinged_pilot(run)
     plant, inputs, steps = run.plant(run.core()), run.inputs_on_grid(), run.steps()
     run.delay_steps(plant.core)
     for interval_s in filter(None, [run.outputs.every_s]):
@@ -138,6 +148,27 @@ def run_pilot(scene: Scene, step_s: float) -> Pilot:
         raise BadInput(f"{scene.path}: run.step_s: half a step of {step_s:g} s is refused in {errors.unknown} windows")
     pose = plant.pose
     return Pilot(step_s, errors, np.array([*plant.nu, pose.x_m, pose.y_m, pose.heading_rad, *plant.wheel_angles()]))
+
+
+def run_hinged_pilot(run: Scene) -> Pilot:
+    """The same for a vehicle with hinges, with a row of errors a hundred times in the run."""
+    from laconic.simulation.articulated import run_with_hinges  # which reads scenes
+
+    steps, step_s = run.steps(), run.run.step_s
+    for interval_s in filter(None, [run.outputs.every_s]):
+        run.steps_in("outputs.every_s", interval_s)
+    try:
+        found = run_with_hinges(run, ("x_m",), max(1, steps // ROWS), lambda amount: None, estimated=True)
+    except Refused as refused:
+        raise run.refusal_in_file(refused, "") from None
+    if found.refused or found.parts is None:
+        raise BadInput(str(found.refused))
+    errors, motion = found.parts.read(), found.plant.motion()
+    if errors.unknown:
+        raise BadInput(f"{run.path}: run.step_s: a third of a step of {step_s:g} s is refused")
+    return Pilot(step_s, errors, np.array([
+        *motion.velocity_m_per_s, motion.yaw_rate_rad_per_s, motion.x_m, motion.y_m, motion.heading_rad,
+        *motion.hinge_angle_rad, *motion.hinge_rate_rad_per_s, *motion.wheel_angle_rad]))
 
 
 def is_confirmed(scene: Scene, pilot: Pilot, tolerance: float) -> bool:

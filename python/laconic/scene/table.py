@@ -55,6 +55,8 @@ def entries_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any
     check_bounds(text)
     return tomllib.loads(text, parse_float=number)
 
+NEAR, VERY_NEAR = 0.6, 0.65  # of letters that two keys share: one may be the other, mistyped
+
 
 class Table:
     """One table of a file; keeps which keys were read, so that `done` finds unknown ones."""
@@ -107,10 +109,14 @@ class Table:
         return value
 
     def _mistyped(self, key: str) -> str:
-        """The key that was probably meant to be this one."""
+        """The key that was probably meant to be this one, in words."""
+        typed = self.mistyped(key, NEAR)
+        return f" (you wrote {typed}, which is no known key here)" if typed else ""
+
+    def mistyped(self, key: str, near: float = VERY_NEAR) -> str:
+        """The unread key that was probably meant to be this one; "" for none."""
         unread = [entry for entry in self._entries if entry not in self._known | self._expected]
-        close = difflib.get_close_matches(key, unread, n=1)
-        return f" (you wrote {close[0]}, which is no known key here)" if close else ""
+        return next(iter(difflib.get_close_matches(key, unread, n=1, cutoff=near)), "")
 
     def value(self, key: str, default: Any, kinds: tuple[type, ...], what: str) -> Any:
         """A value of one of some kinds, which `what` names in the message."""

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,10 @@ from laconic.simulation.steering import Commands
 CHUNK = 2048             # steps whose inputs are made ready at once
 ALLOWED = 1e-9           # of the size of a start: what a projection may change of it by rounding
 IN_SINGLE = 1e-4
+SAME_RATE = 1e-6         # of a rate at the start that the wheels set, too
+FOLDED_RAD = math.pi / 2
+PARTS = 3                # of a step, for the estimate of its error
+OF_DISTANCE = 2.0        # what a method of order 2 makes of a distance of parts of two thirds is 1.8
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
          "hinge_rate_rad_per_s", "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
 OF_MOTION = {"wheel_speed_rad_per_s", "wheel_angle_rad", "hinge_angle_rad", "hinge_rate_rad_per_s", "body_x_m",
@@ -61,6 +66,98 @@ def kept_signals_with_hinges(scene: Scene, given: Sequence[str]) -> tuple[str, .
     return kept or scene.outputs.signals or usual_signals_with_hinges(scene)
 
 
+@dataclass(frozen=True)
+class HingeErrorSizes:
+    """Sizes of an error of the state; of hinges and wheels that of the one farthest off."""
+
+    velocity_m_per_s: float
+    yaw_rate_rad_per_s: float
+    hinge_rate_rad_per_s: float
+    place_m: float
+    heading_rad: float
+    hinge_angle_rad: float
+    wheel_angle_rad: float
+
+
+HINGE_ERRORS = tuple(HingeErrorSizes.__dataclass_fields__)
+
+
+@dataclass(frozen=True)
+class HingeErrors:
+    """What is known of the error of a run with hinges."""
+
+    now: HingeErrorSizes
+    largest: HingeErrorSizes  # of the rows of the run
+    unknown: int              # steps whose parts were refused: then the errors are infinite
+
+
+class Parts:
+    """The same run in steps of a third, whose distance from it estimates its error.
+
+    A third and no half, since `auto` divides steps by powers of two: halves could be the same steps again. What is off
+    by a method of order 2 or more is at most twice the distance. Inputs are those of the whole steps, divided.
+    """
+
+    def __init__(self, plant: ArticulatedPlant):
+        self._plant, self._whole = plant.twin(plant.step_s / PARTS), plant
+        self._rows, self._unknown = list[list[float]](), 0
+
+    def follow(self, table: np.ndarray) -> None:
+        """The parts of steps that the run itself takes along these inputs."""
+        shares = np.arange(PARTS + 1) / PARTS
+        points = table[:, :1] + shares[None, :, None] * (table[:, 1:] - table[:, :1])
+        points[:, -1] = table[:, 1]
+        pairs = np.stack([points[:, :-1], points[:, 1:]], axis=2)
+        try:
+            if not self._unknown:
+                self._plant.follow(pairs.reshape(-1, 2, table.shape[2]))
+        except Refused:
+            self._unknown = -len(table)
+        self._unknown += len(table) if self._unknown else 0
+
+    def take(self) -> None:
+        """A row of what is known at this moment."""
+        self._rows.append(self._distance() if not self._unknown else [math.inf] * len(HINGE_ERRORS))
+
+    def _distance(self) -> list[float]:
+        a, b = self._whole.motion(), self._plant.motion()
+        found = {"velocity_m_per_s": _farthest([np.hypot(*(a.velocity_m_per_s - b.velocity_m_per_s))]),
+                 "place_m": math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)}
+        found |= {name: _farthest(np.subtract(getattr(a, name), getattr(b, name)))
+                  for name in HINGE_ERRORS if name not in found}
+        return [OF_DISTANCE * found[name] for name in HINGE_ERRORS]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """By name of a further column of outputs."""
+        table = np.array(self._rows, float).reshape(len(self._rows), len(HINGE_ERRORS))
+        return {f"estimated_error_{name}": column for name, column in zip(HINGE_ERRORS, table.T.copy(), strict=True)}
+
+    def read(self) -> HingeErrors:
+        """The errors of the last row, and the largest of all rows."""
+        table = np.array(self._rows, float)
+        return HingeErrors(HingeErrorSizes(*table[-1].tolist()), HingeErrorSizes(*table.max(axis=0).tolist()),
+                           self._unknown)
+
+
+def _farthest(differences: Any) -> float:
+    return float(np.max(np.abs(differences), initial=0.0))
+
+
+@dataclass(frozen=True)
+class Folded:
+    """A trailer that turned by more than a right angle against what draws it."""
+
+    hinge: str
+    first_s: float   # of the rows
+    most_rad: float
+
+    def in_words(self) -> str:
+        """For people."""
+        return (f"{self.hinge} folds: its hinge angle is beyond 90° from t = {self.first_s:g} s on, at most "
+                f"{math.degrees(self.most_rad):.4g}°; a real one would hit what draws it; give stop_low_deg and "
+                "stop_high_deg to end the run there")
+
+
 class Rows:
     """The outputs of a run, row by row."""
 
@@ -72,6 +169,10 @@ class Rows:
         self._of_load = "no_slip_margin_N" in names or bool(scene.vehicle["friction_coefficient"])
         self._accelerates = "acceleration_body_m_per_s2" in names
         self.least_margin: tuple[float, float] | None = None  # N, s
+        follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
+        self._trailers = [(at, hinge) for at, (hinge, link) in enumerate(zip(
+            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows]
+        self._folds = dict[str, Folded]()
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._parts = [(signal, *_split(signal, of_hinge)) for signal in kept]
         self._follows_commands = bool(names & {ANGLE, CURVATURE})
@@ -84,6 +185,7 @@ class Rows:
     def take(self, plant: ArticulatedPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts."""
         motion, given = plant.motion(), self._inputs.held_at(tick) if self._follows_commands else {}
+        self._watch_folds(motion, tick * self._inputs.step_s)
         reactions = None
         if self._of_ground or self._of_load:
             loads = self._loads.of(motion) if self._of_load else None
@@ -93,6 +195,19 @@ class Rows:
             self.least_margin = reactions.no_slip_margin_N, tick * self._inputs.step_s
         acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
         self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
+
+    def _watch_folds(self, motion: ArticulatedMotion, time_s: float) -> None:
+        """Notes trailers beyond a right angle, and how far they come."""
+        for at, hinge in self._trailers:
+            angle = abs(wrapped(float(motion.hinge_angle_rad[at])))
+            if angle > FOLDED_RAD or hinge.name in self._folds:
+                seen = self._folds.setdefault(hinge.name, Folded(hinge.name, time_s, angle))
+                self._folds[hinge.name] = Folded(hinge.name, seen.first_s, max(seen.most_rad, angle))
+
+    @property
+    def folded(self) -> tuple[Folded, ...]:
+        """Trailers that folded."""
+        return tuple(self._folds.values())
 
     def _value(self, part: tuple[str, str, int], motion: ArticulatedMotion, reactions: ArticulatedReactions | None,
                acceleration: np.ndarray, row: np.ndarray, given: dict[str, float]) -> float:
@@ -131,19 +246,30 @@ def _split(signal: str, of_hinge: dict[str, int]) -> tuple[str, int]:
     return name, of_hinge[item] if item in of_hinge else int(item) - 1 if item else 0
 
 
-def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> ArticulatedPlant:
-    """The vehicle of a scene at its start; Refused for a motion that its wheels do not allow."""
+def given_start(scene: Scene, vehicle: ArticulatedVehicle) -> dict[str, Any]:
+    """The numbers of a scene's start, as ArticulatedVehicle.plant takes them."""
     start = scene.initial
     angles = [hinge.start_angle_rad for hinge in scene.hinges]
-    rates = [hinge.start_rate_rad_per_s for hinge in scene.hinges]
-    given: dict[str, Any] = {"velocity_m_per_s": start.velocity_body_m_per_s,
-                             "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s, "x_m": start.x_m, "y_m": start.y_m,
-                             "heading_rad": start.heading_rad, "hinge_angle_rad": angles, "inputs": row}
+    given = [hinge.start_rate_rad_per_s for hinge in scene.hinges]
+    rates = rolling_rates(vehicle, start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, angles, given)
+    for hinge, own, rolling in zip(scene.hinges, given, rates, strict=True):
+        if own and abs(own - rolling) > SAME_RATE * max(1.0, abs(own)):
+            raise BadInput(f"{scene.path}: {hinge.place}.start_rate_rad_per_s: {own:g} has no effect, as the wheels "
+                           f"behind the hinge roll and set its rate, here {round(rolling, 9) + 0.0:.6g} rad/s; take "
+                           "it out")
+    return {"velocity_m_per_s": start.velocity_body_m_per_s, "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s,
+            "x_m": start.x_m, "y_m": start.y_m, "heading_rad": start.heading_rad, "hinge_angle_rad": angles,
+            "hinge_rate_rad_per_s": rates}
+
+
+def start_plant(scene: Scene, vehicle: ArticulatedVehicle, row: np.ndarray) -> ArticulatedPlant:
+    """The vehicle of a scene at its start; Refused for a motion that its wheels do not allow."""
+    start, given = scene.initial, given_start(scene, vehicle)
     try:
-        rates = rolling_rates(vehicle, given["velocity_m_per_s"], start.yaw_rate_rad_per_s, angles, rates)
-        plant = vehicle.plant(scene.run.method, scene.run.step_s, hinge_rate_rad_per_s=rates, **given)
+        plant = vehicle.plant(scene.run.method, scene.run.step_s, inputs=row, **given)
     except Refused as refused:
         raise scene.refusal_in_file(refused, "at t = 0 s") from None
+    rates = given["hinge_rate_rad_per_s"]
     size = max(map(abs, (*start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, *rates)))
     if plant.changed_m_per_s > (ALLOWED if vehicle.core.real == "double" else IN_SINGLE) * max(1.0, size):
         near = plant.motion()
@@ -171,14 +297,33 @@ def rolling_rates(vehicle: ArticulatedVehicle, velocity: Sequence[float], yaw_ra
     return found
 
 
-def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advance
-                    ) -> tuple[ArticulatedPlant, Rows, Commands, float, Refused | None]:
+@dataclass
+class HingedRun:
+    """What a run of a scene with hinges leaves."""
+
+    plant: ArticulatedPlant
+    rows: Rows
+    commands: Commands
+    parts: Parts | None  # where the error was estimated
+    seconds: float = 0.0
+    refused: Refused | None = None
+
+    def take(self, row: np.ndarray, tick: int) -> None:
+        """A row of outputs, and of errors."""
+        self.rows.take(self.plant, row, tick)
+        if self.parts:
+            self.parts.take()
+
+
+def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advance, estimated: bool = False
+                    ) -> HingedRun:
     """Steps a scene to its end, or to a step that is refused, with a row before each `every` steps and at the end."""
     core, inputs = scene.core(), scene.inputs_on_grid()
     vehicle = scene.articulated_vehicle(core)
     commands = Commands(scene, vehicle, inputs)
     plant = start_plant(scene, vehicle, commands.first_row())
-    rows, refused, last = Rows(scene, vehicle, inputs, kept), None, None
+    parts = Parts(plant) if estimated else None
+    run, last = HingedRun(plant, Rows(scene, vehicle, inputs, kept), commands, parts), None
     began = time.perf_counter()
     watched = [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
     try:
@@ -188,22 +333,23 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
             last, count = table[-1, 1] if len(table) else last, len(table)
             for at in _stretches(first, count, every):
                 if at % every == 0:
-                    rows.take(plant, table[at - first, 0], at)
+                    run.take(table[at - first, 0], at)
                 until = min(first + count, (at // every + 1) * every)
-                _follow(scene, plant, table[at - first : until - first], watched)
+                _follow(run, table[at - first : until - first], watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
-        rows.take(plant, commands.row_at(inputs.steps, last), inputs.steps)
+        run.take(commands.row_at(inputs.steps, last), inputs.steps)
     except Refused as why:
         if not plant.steps:
             raise why if str(scene.path) in why.message else scene.refusal_in_file(why, "at t = 0 s") from None
         at_s = f"at t = {plant.steps * scene.run.step_s:g} s"
-        refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
-        if len(rows) <= -(-plant.steps // every):
+        run.refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
+        if len(run.rows) <= -(-plant.steps // every):
             with suppress(Refused):  # of reactions at a posture that has none
-                rows.take(plant, commands.row_at(plant.steps, None), plant.steps)
-    return plant, rows, commands, time.perf_counter() - began, refused
+                run.take(commands.row_at(plant.steps, None), plant.steps)
+    run.seconds = time.perf_counter() - began
+    return run
 
 
 def _stretches(first: int, count: int, every: int) -> list[int]:
@@ -212,7 +358,17 @@ def _stretches(first: int, count: int, every: int) -> list[int]:
     return sorted({first, *inside})
 
 
-def _follow(scene: Scene, plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+    """As follow_rows(); what estimates errors follows, too, as far as the run came."""
+    plant, before_all = run.plant, run.plant.steps
+    try:
+        follow_rows(plant, table, watched)
+    finally:
+        if run.parts:
+            run.parts.follow(table[: plant.steps - before_all])
+
+
+def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
     """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
     if not watched:
         plant.follow(table)

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from laconic.base.progress import Advance, progress_bar
-from laconic.core.articulated import ArticulatedPlant
 from laconic.core.estimate import ErrorRows, Errors, Estimate
 from laconic.core.given import flag, shown
 from laconic.core.grip import Grip
@@ -36,14 +35,17 @@ from laconic.scene.signals import (
 )
 from laconic.scene.table import Table
 from laconic.simulation.articulated import (
+    Folded,
+    HingedRun,
+    HingeErrors,
     Rows,
     input_signals_with_hinges,
     kept_signals_with_hinges,
     run_with_hinges,
     usual_signals_with_hinges,
 )
-from laconic.simulation.slipping import SlippingRows, run_slipping
-from laconic.simulation.steering import Commands, Limited
+from laconic.simulation.slipping import SlippingRun, run_slipping
+from laconic.simulation.steering import Limited
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
@@ -63,9 +65,10 @@ class Trajectory:
     columns: dict[str, np.ndarray]
     grip: Grip | None = None  # None: the scene has no data of the ground
     refused: Refused | None = None  # what ended it before its time
-    errors: Errors | None = None  # at its end; None: the estimate was not asked for
+    errors: Errors | HingeErrors | None = None  # at its end; None: the estimate was not asked for
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
     limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
+    folded: tuple[Folded, ...] = ()  # with hinges: trailers that turned by more than a right angle
     least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
     slip_loss_J: float | None = None  # with hinges where wheels may slip: what slip and scrub took
 
@@ -181,14 +184,16 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
 
     Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. `progress`: says on
     stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps;
-    `estimated`: estimates the run's error (docs/accuracy.md), with friction at three times the cost.
+    `estimated`: estimates the run's error (docs/accuracy.md), with friction at three times the cost, with hinges at
+    four times.
     Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
     is refused or the outputs at the end leave the range of numbers, has the motion up to there.
     """
     if check_scene(scene).has_hinges:
-        if flag("estimated", estimated):
-            raise BadInput(f"{scene.path}: the error of vehicles with hinges is not estimated yet; leave estimated out")
-        return simulate_with_hinges(scene, signals, flag("progress", progress))
+        if flag("estimated", estimated) and scene.slips_on_hinges:
+            raise BadInput(f"{scene.path}: the error of hinges on ground with friction is not estimated yet; leave "
+                           "estimated out")
+        return simulate_with_hinges(scene, signals, flag("progress", progress), estimated)
     kept = kept_signals(scene, signals)
     progress, watched, estimated = flag("progress", progress), flag("watched", watched), flag("estimated", estimated)
     core, steps, every = scene.core(), scene.steps(), interval_of(scene)
@@ -229,28 +234,29 @@ def interval_of(scene: Scene) -> int:
     return every
 
 
-def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool) -> Trajectory:
-    """The run of a scene whose vehicle has bodies on hinges. Its error is not estimated yet."""
-    kept, every = kept_signals_with_hinges(scene, signals), interval_of(scene)
-    with progress_bar(scene.name, scene.steps(), forecasts=True) if progress else nullcontext(_silently) as moved:
+def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, estimated: bool) -> Trajectory:
+    """The run of a scene whose vehicle has bodies on hinges. On ground with friction its error is not estimated yet."""
+    kept, steps, every = kept_signals_with_hinges(scene, signals), scene.steps(), interval_of(scene)
+    found: HingedRun | SlippingRun
+    with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
         if scene.slips_on_hinges:
-            return as_trajectory(scene, every, *run_slipping(scene, kept, every, moved))
-        return as_trajectory(scene, every, *run_with_hinges(scene, kept, every, moved))
-
-
-def as_trajectory(scene: Scene, every: int, plant: ArticulatedPlant | SlippingPlant, rows: Rows | SlippingRows,
-                  commands: Commands, seconds: float, refused: Refused | None) -> Trajectory:
-    """The run of a vehicle with hinges; RunRefused where a step was refused on the way."""
-    steps = scene.steps()
+            found = run_slipping(scene, kept, every, moved)
+        else:
+            found = run_with_hinges(scene, kept, every, moved, estimated)
+    rows, plant = found.rows, found.plant
     ticks = np.append(np.arange(0, steps, every), steps)[: len(rows)]
-    if refused and len(rows):
+    if found.refused and len(rows):
         ticks[-1] = plant.steps
-    run = Trajectory(scene, plant.method, plant.steps, seconds, ticks * scene.run.step_s, rows.columns(),
-                     refused=refused, limited=tuple(commands.limited.values()),
-                     least_margin=getattr(rows, "least_margin", None),
-                     slip_loss_J=slip_loss_of(plant) if isinstance(plant, SlippingPlant) else None)
-    if refused:
-        raise RunRefused(refused, run) from None
+    run = Trajectory(scene, plant.method, plant.steps, found.seconds, ticks * scene.run.step_s, rows.columns(),
+                     refused=found.refused, limited=tuple(found.commands.limited.values()))
+    if isinstance(rows, Rows):
+        run.folded, run.least_margin = rows.folded, rows.least_margin
+    if isinstance(plant, SlippingPlant):
+        run.slip_loss_J = slip_loss_of(plant)
+    if isinstance(found, HingedRun) and found.parts and len(rows):
+        run.errors, run.error_columns = found.parts.read(), found.parts.columns()
+    if found.refused:
+        raise RunRefused(found.refused, run) from None
     return run
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -185,8 +186,18 @@ def start_slipping(scene: Scene, vehicle: SlippingVehicle, angles: Sequence[floa
         raise scene.refusal_in_file(refused, "at t = 0 s") from None
 
 
-def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance
-                 ) -> tuple[SlippingPlant, SlippingRows, SlippingCommands, float, Refused | None]:
+@dataclass
+class SlippingRun:
+    """What a run of a scene with hinges on ground with friction leaves."""
+
+    plant: SlippingPlant
+    rows: SlippingRows
+    commands: SlippingCommands
+    seconds: float
+    refused: Refused | None
+
+
+def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) -> SlippingRun:
     """Steps a scene to its end, or to a step that is refused, with a row before each `every` steps and at the end."""
     vehicle, inputs = scene.slipping_vehicle(scene.core()), scene.inputs_on_grid()
     commands = SlippingCommands(scene, vehicle, inputs)
@@ -215,4 +226,4 @@ def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance
             raise refused from None
     if refused is None or len(rows) <= -(-plant.steps // every):
         rows.take(plant, last, plant.steps)
-    return plant, rows, commands, time.perf_counter() - began, refused
+    return SlippingRun(plant, rows, commands, time.perf_counter() - began, refused)

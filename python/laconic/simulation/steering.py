@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 
@@ -20,7 +21,6 @@ from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, CURVATURE, RATE, TWIST
 from laconic.scene.hinges import Hinge
-from laconic.scene.inputs import InputsOnGrid
 
 ACROSS = 1e-9    # of an axle's direction: rounding
 ROUNDING = 1e-9  # of a limit of rate
@@ -44,13 +44,28 @@ class Limited:
                 f"first at {self.first_s:g} s")
 
 
+class Samples(Protocol):
+    """Inputs on the grid of the steps: those of a scene, or those of a program that drives."""
+
+    @property
+    def signals(self) -> Sequence[str]:
+        """Their names."""
+
+    @property
+    def step_s(self) -> float:
+        """Of the grid."""
+
+    def samples(self, first: int, count: int) -> np.ndarray:
+        """Values (step, start|middle|end, signal) of some steps."""
+
+
 @dataclass
 class Commands:
     """The rows of inputs of a run, in order; `limited` fills as they are made, `refused` says what ends the run."""
 
     scene: Scene
     vehicle: ArticulatedVehicle
-    inputs: InputsOnGrid
+    inputs: Samples
     limited: dict[tuple[str, str], Limited] = field(default_factory=dict)
     refused: Refused | None = None
 

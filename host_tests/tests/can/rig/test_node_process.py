@@ -135,6 +135,8 @@ def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
     ("LACONIC_NODE_WITH_DRIVES=0", "LACONIC_WITH_AXLE_TORQUE=0"),
     ("LACONIC_NODE_WITH_SENSORS=0",), ("LACONIC_NODE_WITH_ESTIMATE=1",),
     ("LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_ESTIMATE=1", "LACONIC_NODE_WITH_DRIVES=0"),
+    ("LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_ESTIMATE=1"),
+    ("LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_DRIVES=0", "LACONIC_SINGLE"),
     ("LACONIC_SINGLE", "LACONIC_NODE_CAN_FD=0", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=1")], ids=" ".join)
 def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[str, ...]) -> None:
     assert compiled(compiler, *definitions) == ""
@@ -144,6 +146,12 @@ def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[s
 def test_more_wheels_than_the_groups_of_voltage_can_number_do_not_compile(compiler: str) -> None:
     assert "VOLTAGE numbers eight groups of three wheels" in compiled(
         compiler, "LACONIC_MAX_WHEELS=25", only="node_motion.c")
+
+
+@pytest.mark.parametrize("bodies", [0, 10])
+def test_more_hinges_than_steering_can_number_do_not_compile(bodies: int) -> None:
+    assert "STEERING numbers nine hinges" in compiled(
+        COMPILERS[0], "LACONIC_NODE_WITH_HINGES=1", f"LACONIC_MAX_BODIES={bodies}", only="node.c")
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterable
+from typing import Any
 
 import pytest
 
@@ -26,9 +28,14 @@ WITH_ONE_PROTOCOL = ("an386-drives", "an386-odrive", "an386-canopen", "an386-mot
 STEPS = {"an385": 4000, "microbit": 2000}  # without floating-point hardware; the others take 10,000
 STEPS_PER_SYNC = 500
 ALL_STEPS = pytest.param(1, marks=pytest.mark.nightly)
+SELDOM = ("an385", "an500", "an500-hinges")  # whose images the ordinary build leaves out
 MASS = wire().number("PARAMETER", "field", "MASS")
 # what a whole load of nothing but masses is refused for; a board in double misses the upper halves first
 UNFIT = dict.fromkeys(FULL, "parameter missing") | {"an500": "input incomplete"}
+
+
+def each(names: Iterable[str]) -> list[Any]:
+    return [pytest.param(name, marks=pytest.mark.nightly) if name in SELDOM else name for name in names]
 
 
 def fits_small_image(scene: Scene) -> bool:
@@ -49,7 +56,7 @@ def rk4_can(scene: Scene) -> bool:
 
 
 @pytest.mark.parametrize("share", [10, ALL_STEPS], ids=["a tenth", "all steps"])
-@pytest.mark.parametrize("name", FULL)
+@pytest.mark.parametrize("name", each(FULL))
 def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str, share: int) -> None:
     with emulated_node(name) as node:
         for scene_name in rigid_scene_names():
@@ -63,13 +70,13 @@ def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: st
 
 
 @pytest.mark.parametrize("busy", [0, pytest.param(2, marks=pytest.mark.nightly)], ids=["idle", "busy"])
-@pytest.mark.parametrize("name", list(BOARDS))
+@pytest.mark.parametrize("name", each(BOARDS))
 def test_a_board_that_has_just_been_started_loads_a_vehicle_at_once(name: str, busy: int) -> None:
     with busy_cores(busy):
         assert [start(name, "kuka_youbot") for _ in range(2)] == [None, None]
 
 
-@pytest.mark.parametrize("name", FULL)
+@pytest.mark.parametrize("name", each(FULL))
 def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(name: str) -> None:
     """A long SYNC keeps it busy while twelve times its ring arrives at once; the checksum counts what it has read."""
     with emulated_node(name) as node:
@@ -122,6 +129,7 @@ def test_a_board_without_the_scenes_method_names_the_remedy() -> None:
         run_lockstep(node, scene, 10)
 
 
+@pytest.mark.nightly
 def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_small(
         capsys: pytest.CaptureFixture[str]) -> None:
     costs = [cost_of(name) for name in BOARDS]

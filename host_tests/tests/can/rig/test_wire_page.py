@@ -86,7 +86,7 @@ def test_the_node_requires_what_the_page_states_and_nothing_else() -> None:
     start.x_m = start.y_m = start.heading_rad = start.nu_rad_per_s[0] = 1.0
     whole = list(parameters_of(plant, start))
     loaded = {field for field, row in PARAMETERS.items()
-              if not row[3].startswith("not") and not row[0].startswith(("rig.drives", "sensors"))}
+              if not row[3].startswith("not") and not row[0].startswith(("rig.drives", "sensors", "hinges"))}
     assert {field for field, _, _ in whole} == loaded
     with own_node("virtual", "double") as node:
         for left_out in whole:
@@ -210,6 +210,7 @@ def told(last_words: list[str]) -> dict[str, int]:
     return {name: int(count) for name, _, count in lines}
 
 
+@pytest.mark.nightly
 def test_the_keys_holder_drives_and_nobody_else(key_files: tuple[str, str], capsys: pytest.CaptureFixture[str]):
     mine, other = key_files
     last_words: list[str] = []

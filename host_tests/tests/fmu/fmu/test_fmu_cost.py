@@ -19,6 +19,7 @@ def instructions_a_step(loop: str) -> float:
     return (twice - once) / STEPS
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
 def test_the_calls_of_a_step_cost_less_than_the_step(capsys: pytest.CaptureFixture[str]):
     core, least = instructions_a_step("core"), instructions_a_step("minimal")

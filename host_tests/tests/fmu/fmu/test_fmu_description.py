@@ -108,6 +108,7 @@ def test_fmpy_validates_every_variant_without_a_message(fmus: list[Path]) -> Non
     assert {str(fmu): validate_fmu(str(fmu)) for fmu in fmus} == {str(fmu): [] for fmu in fmus}
 
 
+@pytest.mark.nightly
 def test_the_manipulation_toolbox_has_no_finding(fmus: list[Path]) -> None:
     tool = Path(sys.executable).parent / "fmutool"
     for fmu in fmus[:5]:

@@ -81,6 +81,7 @@ def global_names(objects: Sequence[Path]) -> set[str]:
     return {words[2] for line in listed.stdout.splitlines() if len(words := line.split()) == 3}
 
 
+@pytest.mark.nightly
 @needs_gcc
 def test_two_source_fmus_in_one_static_program_give_each_its_own_results(tmp_path: Path) -> None:
     objects, names, expected = [], [], []

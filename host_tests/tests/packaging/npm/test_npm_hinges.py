@@ -314,6 +314,7 @@ laconic.robot({ vehicle: { mass_kg: 1, yaw_inertia_kgm2: 1, wheel_radius_m: 1, c
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("tsc") is None, reason="needs tsc (Debian: node-typescript)")
 def test_its_types_take_the_readmes_example_and_refuse_what_is_wrong(tmp_path):
     unpack(tmp_path / "node_modules/laconic-robots")

@@ -75,6 +75,7 @@ robot.run("200");
 """
 
 
+@pytest.mark.nightly
 @needs_npm_package
 @needs_node
 @pytest.mark.skipif(shutil.which("tsc") is None, reason="needs tsc (Debian: node-typescript)")
@@ -235,6 +236,7 @@ def test_it_tells_of_itself_what_all_packages_tell():
     assert re.fullmatch(r"\d+\.\d+\.\d+", manifest["version"]) and manifest["license"] == "MIT"
 
 
+@pytest.mark.nightly
 @needs_npm_package
 @needs_node
 def test_packing_twice_gives_the_same_bytes_and_every_file_that_npm_would_pack(tmp_path):

@@ -183,7 +183,8 @@ def hinged_in_python(real: str) -> list[float]:
     return [at.x_m, at.y_m, at.heading_rad, *map(float, at.hinge_angle_rad), at.energy_J]
 
 
-@pytest.mark.parametrize(("compiler", "real"), [("gcc", "double"), ("clang++", "single")])
+@pytest.mark.parametrize(("compiler", "real"), [
+    ("gcc", "double"), pytest.param("clang++", "single", marks=pytest.mark.nightly)])
 def test_a_vehicle_with_a_caster_and_a_trailer_has_the_bits_of_the_core(compiler, real, pair):
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")
@@ -194,6 +195,7 @@ def test_a_vehicle_with_a_caster_and_a_trailer_has_the_bits_of_the_core(compiler
     assert [float.fromhex(word) for word in run("./hinged", folder=pair).split()] == hinged_in_python(real)
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("nm") is None, reason="needs gcc and nm")
 def test_without_room_for_bodies_nothing_of_hinges_is_in_the_files(pair):
     names = []
@@ -204,6 +206,7 @@ def test_without_room_for_bodies_nothing_of_hinges_is_in_the_files(pair):
     assert "laconic_articulated_step" in names[1]
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("nm") is None, reason="needs gcc and nm")
 def test_a_program_without_hinges_links_no_function_of_them(pair):
     (pair / "plain.c").write_text('#include "laconic/laconic.h"\nint main(void) { return (int)laconic_self_test(); }\n',

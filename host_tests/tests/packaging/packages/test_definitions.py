@@ -111,6 +111,7 @@ def test_a_program_with_hinges_that_differs_does_not_link_and_one_without_needs_
     assert other.returncode == 0, other.stderr
 
 
+@pytest.mark.nightly
 def test_a_program_that_includes_the_core_itself_needs_nothing_more(libraries):
     text = f'#include "laconic/laconic.h"\n#include "laconic/laconic.c"\nint main(void) {{ {CALLS["plant"]} }}\n'
     (libraries / "all.c").write_text(text, encoding="utf-8")
@@ -159,6 +160,7 @@ def test_plugins_with_other_builds_in_one_process_call_their_own_functions(order
     assert done.stdout.split() == [{"usual": "1.0", "single": "11.0", "four": "1.0"}[name] for name in order]
 
 
+@pytest.mark.nightly
 def test_a_library_of_unusual_definitions_exports_its_names_where_it_is_asked_to(libraries):
     for name, options, exported in (("asked", ["-DLACONIC_EXPORTED"], True), ("hidden", [], False)):
         done = run(libraries, "-O0", "-fPIC", "-shared", "-DLACONIC_SINGLE", *options, "laconic/laconic.c", "-o",
@@ -218,7 +220,8 @@ def test_a_port_and_a_node_that_differ_do_not_link(definition, tmp_path):
     folders = [SOURCE_DIR / "core_c/include", SOURCE_DIR / "firmware_stub/include", wire]
     libraries = [built(f"firmware_stub/lib{name}.a") for name in ("laconic_node_double", "laconic_secure")]
     libraries += [built("firmware_stub/liblaconic_wire.a"), built("core_c/liblaconic.a")]
-    done = run(tmp_path, "-DLACONIC_NODE_WITH_ESTIMATE=1", *([f"-D{definition}"] if definition else []),
+    done = run(tmp_path, "-DLACONIC_NODE_WITH_ESTIMATE=1", "-DLACONIC_NODE_WITH_HINGES=1",
+               *([f"-D{definition}"] if definition else []),
                *(f"-I{folder}" for folder in folders), "port.c", *libraries, "-o", "port")
     if definition is None:
         assert done.returncode == 0, done.stderr

@@ -54,6 +54,7 @@ def test_every_scene_of_the_project_can_be_chosen_and_runs(page):
         assert all(isinstance(number, float | int) for number in pose(page)), name
 
 
+@pytest.mark.nightly
 def test_play_pause_step_speed_and_restart(page):
     assert page.text("play") == "Play"  # at rest, as people who want less motion asked for
     page.choose("speed", "2")
@@ -84,6 +85,7 @@ def test_the_scenes_own_drive_ends_at_its_end_and_begins_anew(page):
     page.wait("const t = parseFloat(document.getElementById('time').textContent); return t > 0 && t < 2")
 
 
+@pytest.mark.nightly
 def test_sliders_drive_in_each_direction_that_the_wheels_allow(page):
     for index, name in enumerate(DIRECTIONS):
         page.choose("robot", "robotino2")
@@ -101,6 +103,7 @@ def test_sliders_drive_in_each_direction_that_the_wheels_allow(page):
     assert page.js("return document.getElementById('left').disabled")
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("robot", "unit", "shown"), [
     ("robotino2", "V", "now-turn"), ("canopen_agv", "N·m", "now-forward")])
 def test_each_wheel_has_a_slider_of_voltage_or_without_motors_of_torque(page, robot, unit, shown):
@@ -194,6 +197,7 @@ def test_the_view_comes_closer_and_goes_farther(page):
     assert len({first, closer, picture()}) == 3
 
 
+@pytest.mark.nightly
 def test_methods_and_steps_take_the_same_drive_with_their_own_error(page):
     step(page)
     page.choose("forward", "0.3")
@@ -246,6 +250,7 @@ def test_error_over_cost_is_measured_for_every_method(page):
     page.wait("return document.getElementById('accuracy-note').textContent === 'Measuring …'")
 
 
+@pytest.mark.nightly
 def test_the_ground_can_have_friction_and_the_robot_without_slip_goes_beside(page):
     page.choose("robot", "robotino2")
     page.click("friction")
@@ -300,6 +305,7 @@ def test_every_number_of_the_robot_changes_how_the_same_drive_ends(page):
         assert pose(page) != before, path
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("path", "text", "told"), [
     ("vehicle.mass_kg", "0", "0 is not positive; give a value above 0"),
     ("vehicle.yaw_inertia_kgm2", "-1", "-1 is not positive; give a value above 0"),

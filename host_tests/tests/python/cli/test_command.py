@@ -105,6 +105,7 @@ def test_a_scene_is_found_by_name_and_by_path(tmp_path):
         scene_path("somewhere/s1")
 
 
+@pytest.mark.nightly
 def test_demo_of_one_scene_writes_pictures_and_figures(tmp_path, capsys):
     assert run(["demo", "paper_differential_drive", "--out", str(tmp_path), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)

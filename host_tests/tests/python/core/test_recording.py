@@ -124,6 +124,7 @@ def test_an_instant_more_in_steps_is_no_python_call_more_to_drive(tmp_path):
     assert calls_of(lambda: simulate(many)) <= calls_of(lambda: simulate(few)) + 5
 
 
+@pytest.mark.nightly
 def test_reading_and_driving_steps_grow_with_their_number_alone(tmp_path, capsys):
     """Calls are counted; the ratio to the time of the bare TOML reader is printed, as it differs from run to run."""
     counts = {}
@@ -158,6 +159,7 @@ def cost(kind: str, every: int, watch: int) -> float:
     return (most - least) / (MOST - LEAST)
 
 
+@pytest.mark.nightly
 @needs_cachegrind
 @pytest.mark.parametrize(("watch", "what"), [(0, "without the ground"), (1, "with the no-slip margin")])
 def test_a_row_costs_at_most_twenty_steps(capsys, watch, what):
@@ -168,6 +170,7 @@ def test_a_row_costs_at_most_twenty_steps(capsys, watch, what):
     assert row / step < LIMIT
 
 
+@pytest.mark.nightly
 @needs_cachegrind
 def test_watching_the_ground_costs_at_most_twenty_steps_and_nothing_where_it_is_off(capsys):
     step, watched = cost("held", 0, 0), cost("held", 0, 2)

@@ -45,6 +45,7 @@ def test_self_test_and_check_double_find_what_libgcc_rounds_wrongly_and_nothing_
     assert {line[:5] for line in lines[1:-1]} == {"a + b", "a - b"}
 
 
+@pytest.mark.nightly
 @needs_boards
 @needs_gcc
 def test_it_makes_double_precision_sound_on_a_cortex_m4f_and_trajectories_have_this_machines_bits(tmp_path: Path):

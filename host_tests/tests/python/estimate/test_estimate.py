@@ -52,6 +52,7 @@ def true_errors(run, states, truth):
     return max(off[:3]), math.hypot(off[3], off[4]), off[5], max(off[6:])
 
 
+@pytest.mark.nightly
 def test_the_estimate_is_within_a_factor_of_ten_of_the_proved_error(tmp_path):
     """Stiff up to a million times; every method that takes the steps."""
     compared, outside = 0, []

@@ -71,6 +71,7 @@ def test_legends_never_cover_curves(tmp_path, drawn, wheels):
     assert_legends_stand_apart(drawn[0])
 
 
+@pytest.mark.nightly
 def test_legends_of_the_demo_never_cover_curves(tmp_path, drawn):
     points = [Point(method, method, 0.001 * k, 1e-9 * k, 1e-9, 1e-9, 50.0, 100.0 / k)
               for method in METHODS for k in (1, 2)]

@@ -87,6 +87,7 @@ def test_resistance_and_torque_constant_are_written_with_the_back_emf(tmp_path):
     assert "resistance of the motors: " in (tmp_path / "fitted.toml").read_text()
 
 
+@pytest.mark.nightly
 def test_simulated_voltages_on_ideal_ground_are_replayed_and_identified_from_by_the_command(tmp_path, capsys):
     text = scene_path("turtlebot3_burger").read_text()
     heavy = next(line for line in text.splitlines() if line.startswith("yaw_inertia_kgm2"))

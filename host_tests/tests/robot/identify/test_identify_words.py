@@ -34,6 +34,7 @@ def uncertainty(found, name):
     return found.half_widths[names.index(name)] if name in names else prior
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("robot", "first"), [("optiodom_diff", "straight ahead"), ("kuka_youbot", "straight ahead")])
 def test_no_other_motion_tells_more_than_the_one_that_is_advised(robot, first):
     scene, random = read_scene(robot), np.random.default_rng(8)

@@ -385,3 +385,22 @@ def test_frames_of_another_length_are_left_out_of_a_rigs_replay_and_reported(tmp
     capsys.readouterr()
     assert run(["rig", "s1", "--replay", str(path), "--json"]) == 0
     assert any("left out: of another length" in note for note in json.loads(capsys.readouterr().out)["notes"])
+
+
+def test_a_log_as_mf4_names_the_package_that_it_needs(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("laconic.robot.logs.can_frames.importlib.util.find_spec", lambda _: None)
+    monkeypatch.setattr("laconic.base.extras.requires", lambda _: ["asammdf>=8 ; extra == 'mf4'"])
+    assert run(["rig", "turtlebot3_burger", "--steps", "10", "--log", str(tmp_path / "run.mf4")]) == 2
+    assert 'asammdf, which is not installed; pip install "laconic[mf4]"' in capsys.readouterr().err
+
+
+@pytest.mark.nightly
+def test_a_log_as_mf4_holds_the_frames_of_the_log_as_blf(tmp_path, capfd):
+    pytest.importorskip("asammdf")
+    logs = [tmp_path / f"run.{ending}" for ending in ("mf4", "blf")]
+    assert run(["rig", "turtlebot3_burger", "--steps", "50", *(f"--log={path}" for path in logs)]) == 0
+    of_mf4, of_blf = ([(each.arbitration_id, bytes(each.data)) for each in read_frames(path).frames] for path in logs)
+    assert of_mf4 == of_blf and len(of_mf4) > 100
+    (tmp_path / "cut.mf4").write_bytes(logs[0].read_bytes()[:3000])
+    assert run(["replay", str(tmp_path / "cut.mf4"), "turtlebot3_burger", "--map", "rig"]) == 2
+    assert "Traceback" not in capfd.readouterr().err

@@ -87,6 +87,7 @@ def test_the_heading_of_the_robot_is_not_told_by_positions(tmp_path, capsys):
     assert found["nominal_kept"] == ["heading of the robot"]
 
 
+@pytest.mark.nightly
 def test_intervals_from_positions_hold_the_truth_of_made_up_robots():
     scene, held, wide = read_scene(SCENE), [], []
     parameters = geometry_of(scene, ("radius", "distance"))

@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 
 from laconic.cli.main import run
-from laconic.robot.logs import gather_logs
+from laconic.robot.logs import Log, gather_logs
+from laconic.robot.logs.log import Counter
+from laconic.robot.logs.wraps import folded
+from laconic.robot.replay.missed_wraps import fitting
+from laconic.robot.replay.rolling import rotations_of
+from laconic.scene import read_scene
 from log_support import (
     CAN_MAP,
     SCENE,
@@ -115,8 +120,82 @@ def test_a_sampling_too_slow_for_the_counter_is_reported(tmp_path, capsys):
     log = csv(tmp_path / "run.csv", np.column_stack([rows[:, 0], counts, rows[:, 3:]]))
     unit = "[wheel_angle]\nunit = \"tick\"\nticks_per_turn = 4096\nwrap = true"
     found = replayed(capsys, log, mapped(tmp_path, TEXT_MAP, change=[("[wheel_angle]", unit)]))
-    assert "wheel_angle 'left' changes by 48 % of wrap = 4096 until line 3, so its direction is uncertain" in " ".join(
-        found["remarks"])
+    assert ("wheel_angle 'left' changes by 48 % of wrap = true (4096) until line 3, so its direction is uncertain"
+            ) in " ".join(found["remarks"])
+
+
+def seldom(share: float, wrap: int = 4096, count: int = 60) -> tuple[np.ndarray, float]:
+    """Counts whose faster wheel turns by this share of the wrap in each row, and the gear that makes it so."""
+    rows = motion(count)
+    gear = share * wrap / TICKS * 2.0 * np.pi / float(rows[1, 2])
+    rows[:, 1:3] = np.floor(wrapped(rows[:, 1:3] * gear * TICKS / (2.0 * np.pi), wrap))
+    return rows, gear
+
+
+@pytest.mark.parametrize("share", [0.56, 0.72, 0.95, 1.3])
+@pytest.mark.parametrize("kind", ["absolute", "increments"])
+@pytest.mark.parametrize("evidence", ["pose", "positions", "speed", "centre_of_mass"])
+def test_a_row_in_which_a_counter_passes_half_its_range_is_named_by_what_contradicts_it(
+        tmp_path, capsys, share, kind, evidence):
+    rows, gear = seldom(share)
+    speeds = np.gradient(motion(60)[:, 1:3], 0.05, axis=0)
+    if kind == "increments":
+        rows[1:, 1:3] = np.diff(rows[:, 1:3], axis=0)
+    unit = (f'[wheel_angle]\nkind = "{kind}"\nunit = "tick"\nticks_per_turn = {TICKS}\ngear_ratio = {gear!r}\n'
+            "wrap = 4096")
+    changes = [("[wheel_angle]", unit), *([('"x", "y", "yaw"', '"x", "y"')] if evidence == "positions" else []),
+               *([("[pose]", '[pose]\npoint = "centre_of_mass"')] if evidence == "centre_of_mass" else [])]
+    log = csv(tmp_path / "run.csv", rows)
+    if evidence == "speed":
+        log = tmp_path / "run.csv"
+        np.savetxt(log, np.column_stack([rows, speeds]), delimiter=",", comments="", header="t,left,right,x,y,yaw,l,r")
+        changes.append(("[pose]", '[wheel_speed]\ncolumns = ["l", "r"]\n[pose]'))
+    remarks = " ".join(replayed(capsys, log, mapped(tmp_path, TEXT_MAP, change=changes))["remarks"])
+    assert "line 3: wheel " in remarks or "line 2: wheel " in remarks
+    assert "% of wrap = 4096 in one row, but by " in remarks
+    assert "record more often, or count with a larger wrap" in remarks
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 2e-4, 3e-3])
+def test_a_counter_that_is_sampled_often_enough_has_no_remark_whatever_the_noise_of_the_pose(
+        tmp_path, capsys, noise_m):
+    rows, gear = seldom(0.4, count=400)
+    noise = np.random.default_rng(1)
+    rows[:, 3:5] += noise_m * noise.standard_normal((400, 2))
+    rows[:, 5] += noise_m * noise.standard_normal(400)
+    unit = f'[wheel_angle]\nunit = "tick"\nticks_per_turn = {TICKS}\ngear_ratio = {gear!r}\nwrap = true'
+    log = csv(tmp_path / "run.csv", rows)
+    assert not replayed(capsys, log, mapped(tmp_path, TEXT_MAP, change=[("[wheel_angle]", unit)]))["remarks"]
+
+
+def test_one_row_that_was_lost_at_speed_is_named(tmp_path, capsys):
+    rows, gear = seldom(0.3, count=200)
+    rows = np.delete(rows, [100], axis=0)
+    unit = f'[wheel_angle]\nunit = "tick"\nticks_per_turn = {TICKS}\ngear_ratio = {gear!r}\nwrap = true'
+    log = csv(tmp_path / "run.csv", rows)
+    remarks = replayed(capsys, log, mapped(tmp_path, TEXT_MAP, change=[("[wheel_angle]", unit)]))["remarks"]
+    assert ("wheel_angle 'right' changes by 30 % of wrap = true (4096) until line 101 and by -40 % until line 102, "
+            "which may be 60 %, so its direction is uncertain") in " ".join(remarks)
+
+
+@pytest.mark.parametrize("fast", [
+    (0.03, 0.02, 0.05), (-0.03, 0.01, 0.04), (0.02, -0.03, -0.06), (0.02, -0.01, -0.06)])
+def test_a_wheel_that_contradicts_the_others_by_a_part_of_its_range_is_named(tmp_path, fast):
+    scene = read_scene("kuka_youbot")
+    steps = rotations_of(scene.core(), scene.vehicle, np.tile(fast, (39, 1)))
+    wrap = float(np.abs(steps).max()) / 0.6
+    steps[:19] *= 0.5
+    steps[20:] *= 0.5
+    assert (np.abs(steps[19]) > 0.5 * wrap).sum() == 1
+
+    def told(steps: np.ndarray) -> str:
+        angle = np.vstack([np.zeros(4), np.cumsum(folded(steps, wrap), axis=0)])
+        counter = Counter("wrap = 9", np.full((1, 4), wrap), lambda row: f"line {row + 2}")
+        log = Log(tmp_path / "run.csv", "map", 0.1 * np.arange(40), wheel_angle_rad=angle, counter=counter)
+        return " ".join(fitting(scene, [log])[0].remarks)
+
+    assert "line 22: wheel " in told(steps) and "but by the other wheels by" in told(steps)
+    assert not told(0.5 * steps)
 
 
 def test_signals_of_a_bus_that_wrap_are_mended_and_named(tmp_path, capsys):

@@ -1,7 +1,7 @@
 /* A peer of the robot on Fast DDS, set up as ROS 2's middleware for it does: names, quality of service, user data. It
  * drives by cmd_vel, hears every topic, reads the graph, and prints what it saw as JSON.
  *
- *     peer DOMAIN SECONDS COMMANDS_PER_SECOND twist|stamped|garbage|none X Z
+ *     peer DOMAIN SECONDS COMMANDS_PER_SECOND twist|stamped|garbage|call|none X Z
  */
 #include "peerPubSubTypes.h"
 #include <algorithm>
@@ -108,6 +108,46 @@ template <class Message> struct Heard : DataReaderListener {
     }
 };
 
+/* The client of a service, as rmw_fastrtps has it: a response belongs to a request by an identity in its header, whose
+ * GUID is that of the client's reader. */
+struct Client : DataReaderListener {
+    std::mutex lock;
+    GUID_t own;
+    std::vector<std::string> answers;
+    long sent = 0, of_others = 0;
+
+    void call(DataWriter *writer, long number) {
+        rcl_interfaces::srv::dds_::GetParameterTypes_Request_ request;
+        request.names({"use_sim_time", "watchdog_s", "scene", "nothing"});
+        if (number % 2) request.names().pop_back();
+        WriteParams params;
+        params.related_sample_identity().writer_guid() = own;
+        writer->write(&request, params);
+        ++sent;
+    }
+    void on_data_available(DataReader *reader) override {
+        rcl_interfaces::srv::dds_::GetParameterTypes_Response_ response;
+        SampleInfo info;
+        while (reader->take_next_sample(&response, &info) == ReturnCode_t::RETCODE_OK) {
+            if (!info.valid_data) continue;
+            std::lock_guard<std::mutex> guard(lock);
+            if (info.related_sample_identity.writer_guid() != own) {
+                ++of_others;
+                continue;
+            }
+            std::string text = std::to_string(info.related_sample_identity.sequence_number().to64long());
+            for (octet type : response.types()) text += "," + std::to_string(type);
+            answers.push_back("[" + text + "]");
+        }
+    }
+    void print() {
+        std::lock_guard<std::mutex> guard(lock);
+        std::printf(" \"requests\": %ld, \"of_others\": %ld, \"answers\": [", sent, of_others);
+        for (size_t k = 0; k < answers.size(); ++k) std::printf("%s%s", k ? ", " : "", answers[k].c_str());
+        std::printf("],\n");
+    }
+};
+
 struct Peer {
     Watch watch;
     DomainParticipant *participant;
@@ -140,7 +180,7 @@ struct Peer {
         type.register_type(participant);
         return participant->create_topic(topic_name, type_name, TOPIC_QOS_DEFAULT);
     }
-    template <class Listener> void hear(TypeSupport type, const char *name, const char *type_name, Listener &listener,
+    template <class Listener> DataReader *hear(TypeSupport type, const char *name, const char *type_name, Listener &listener,
                                         int depth, bool is_latched = false) {
         DataReaderQos qos;
         qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
@@ -148,7 +188,7 @@ struct Peer {
         qos.history().depth = depth;
         qos.endpoint().history_memory_policy = PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
         qos.type_consistency().representation.m_value.push_back(XCDR_DATA_REPRESENTATION);
-        subscriber->create_datareader(topic(type, name, type_name), qos, &listener);
+        return subscriber->create_datareader(topic(type, name, type_name), qos, &listener);
     }
     DataWriter *send(TypeSupport type, const char *name, const char *type_name) {
         DataWriterQos qos;
@@ -192,6 +232,17 @@ int main(int count, char **word) {
     if (kind == "stamped") writer = peer.send(TYPE(geometry_msgs, TwistStamped), "rt/cmd_vel", stamped);
     if (kind == "twist") writer = peer.send(TYPE(geometry_msgs, Twist), "rt/cmd_vel", twist);
     if (kind == "garbage") writer = peer.send(TypeSupport(new laconic_test::Short_PubSubType), "rt/cmd_vel", twist);
+    Client client;
+    DataReader *answers = nullptr;
+    if (kind == "call") {
+        const std::string type = "rcl_interfaces::srv::dds_::GetParameterTypes_";
+        const std::string own = "laconic/get_parameter_types";
+        answers = peer.hear(TypeSupport(new rcl_interfaces::srv::dds_::GetParameterTypes_Response_PubSubType),
+                            ("rr/" + own + "Reply").c_str(), (type + "Response_").c_str(), client, 10);
+        writer = peer.send(TypeSupport(new rcl_interfaces::srv::dds_::GetParameterTypes_Request_PubSubType),
+                           ("rq/" + own + "Request").c_str(), (type + "Request_").c_str());
+        client.own = answers->guid();
+    }
     geometry_msgs::msg::dds_::Twist_ command;
     command.linear().x(std::atof(word[5]));
     command.angular().z(std::atof(word[6]));
@@ -204,12 +255,17 @@ int main(int count, char **word) {
         garbage.text(std::string(sent % SHORTER_THAN_A_TWIST, (char)(sent % 251 + 1)));
         if (kind == "twist") writer->write(&command);
         if (kind == "stamped") writer->write(&with_stamp);
+        PublicationMatchedStatus matched;
+        if (kind == "call" && writer->get_publication_matched_status(matched) == ReturnCode_t::RETCODE_OK &&
+            matched.current_count > 0)
+            client.call(writer, client.sent);
         if (kind == "garbage") writer->write(&garbage);
         ++sent;
         std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / per_second));
     }
     std::printf("{\n");
     odom.print("odom"), truth.print("ground_truth"), tf.print("tf"), fixed.print("tf_static");
+    client.print();
     joints.print("joint_states"), imu.print("imu"), graph.print("ros_discovery_info");
     {
         std::lock_guard<std::mutex> guard(graph.lock);

@@ -212,6 +212,7 @@ def normalised_squares(random, steps):
     return error @ np.linalg.solve(ours.covariance, error), np.sum(found, axis=0)
 
 
+@pytest.mark.nightly
 def test_errors_are_as_large_as_the_covariance_says():
     """Means of χ² over seeded runs lie in the band in which 95 % of such means lie."""
     random, runs = np.random.default_rng(12), 60

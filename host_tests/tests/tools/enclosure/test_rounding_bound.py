@@ -82,6 +82,7 @@ def test_no_step_is_further_from_exact_arithmetic_than_the_bound(name):
     assert felt.all() or name not in TURNING, (worst, bounds)
 
 
+@pytest.mark.nightly
 def test_what_has_no_bound_says_why_and_all_else_has_one():
     rows = {name: rounding_row(read_scene(name)) for name in rigid_scene_names()}
     without = {name: row["status"] for name, row in rows.items() if row["status"] != "ok"}

@@ -126,6 +126,7 @@ def test_a_fault_of_a_chunk_is_told_in_one_line_and_nothing_is_lost(tmp_path, mo
     assert run([*ARGUMENTS, "-o", str(tmp_path / "broken")]) == 0
 
 
+@pytest.mark.nightly
 def test_the_page_has_a_picture_for_each_key_and_the_indices_by_name(tmp_path):
     folder = tmp_path / "page"
     assert run(["sweep", "paper_three_wheel_driven", "--vary", "vehicle.mass_kg~uniform(6,8)", "--vary",

@@ -114,6 +114,7 @@ def kept(store):
     return lambda number, rows: store.keep(number, values_of(store)(number), rows)
 
 
+@pytest.mark.nightly
 def test_a_scheduler_at_an_address_gives_the_same_bytes(client, expected, tmp_path):
     store = begun(tmp_path / "there")
     sweep.carry_on(store, scheduler=client.scheduler.address)
@@ -186,6 +187,7 @@ def test_a_worker_of_other_versions_is_refused():
         workers.work("", "", {}, workers.versions() | {"laconic": "0.0.0"})
 
 
+@pytest.mark.nightly
 def test_an_address_without_a_scheduler_is_refused_in_one_line(tmp_path, expected, monkeypatch):
     monkeypatch.setattr(workers, "CONNECT_S", 1)
     store = begun(tmp_path / "nowhere")

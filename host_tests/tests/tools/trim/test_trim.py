@@ -18,16 +18,20 @@ from friction_scenes import skid_steering, slipping
 from laconic.base.paths import SOURCE_DIR, build_dir, built
 from laconic.cli.main import run
 from laconic.core import load
+from laconic.core.articulated import ArticulatedVehicle
 from laconic.errors import ResultFails
 from laconic.scene import METHODS, Outputs, Scene, read_scene
 from laconic.scene.inputs import Input
 from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.simulation import advance_plant
+from laconic.simulation.articulated import start_plant
+from laconic.simulation.steering import Commands
 from laconic.tools.report.binary_tools import run_tool
 from laconic.tools.report.boards import board_row
 from laconic.tools.report.counting import host_state
 from laconic.tools.report.workshop import HOST, M4F, Variant, Workshop
 from laconic.tools.trim import needs_of, trimmed
+from laconic.tools.trim.c_tables import initializer
 
 needs_gcc = pytest.mark.skipif(not HOST.present, reason="no gcc here")
 needs_board = pytest.mark.skipif(not M4F.present, reason="no arm-none-eabi-gcc or qemu-system-arm here")
@@ -167,6 +171,7 @@ def test_only_the_scenes_method_is_linked_and_no_preparation(workshop: Workshop)
     assert not [name for name in symbols if "prepare" in name]
 
 
+@pytest.mark.nightly
 @needs_board
 def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(workshop: Workshop):
     row = board_row(workshop, M4F, Variant(read_scene("s1").with_run(method=EXPLICIT), "single", "-Os", True))
@@ -277,3 +282,107 @@ def test_the_commands_of_the_page_make_a_program_for_one_scene_with_the_cores_bi
     plant.run({"voltage_V[1]": 3.0}, 100)
     pose = plant.pose
     assert [np.float32(each) for each in printed.split()] == [pose.x_m, pose.y_m, pose.heading_rad]
+
+
+# ------------------------------------------------------------------------------- vehicles with hinges
+
+STEPS_OF_TREES = 300
+TREE_PROGRAM = """\
+#include <stdio.h>
+#include <string.h>
+#include "laconic_scene_model.h"
+
+static const laconic_articulated_input given = {INPUT};
+
+int main(void) {
+    laconic_articulated_state state = laconic_scene_start;
+    laconic_articulated_motion now;
+    for (int k = 0; k < STEPS; k++)
+        if (laconic_articulated_step(&laconic_scene_model, &laconic_scene_integrator, &state, &given, &given, NULL))
+            return 1;
+    laconic_articulated_motion_of(&now, &laconic_scene_model, &state);
+    printf("%a %a %a %a\\n", (double)now.x_m, (double)now.y_m, (double)now.heading_rad, (double)now.energy_J);
+    for (int b = 0; b < laconic_scene_model.body_count; b++) printf("%a ", (double)now.hinge_angle_rad[b]);
+    for (int i = 0; i < laconic_scene_model.wheel_count; i++) printf("%a ", (double)now.wheel_angle_rad[i]);
+    return 0;
+}
+"""
+
+
+def tree_sources(scene: Scene, real: str, folder: Path) -> tuple[list[str], list[float]]:
+    """Words of a compiler for the trimmed core of a scene with hinges and a program; and what it is to print."""
+    trimmed(scene, real).write(folder)
+    scene = scene.with_run(real=real)
+    vehicle = ArticulatedVehicle.of(scene)
+    row = Commands(scene, vehicle, scene.inputs_on_grid()).first_row()
+    row[: scene.wheel_count] += 3.0
+    plant = start_plant(scene, vehicle, row)
+    held = initializer(vehicle.core.ffi, plant._input(row)[0], {})
+    text = TREE_PROGRAM.replace("{INPUT}", held).replace("STEPS", str(STEPS_OF_TREES))
+    (folder / "main.c").write_text(text, encoding="utf-8")
+    plant.run(row, STEPS_OF_TREES)
+    now = plant.motion()
+    core = SOURCE_DIR / "core_c"
+    files = [*sorted((core / "src").glob("*/*.c")), *sorted((core / "optional" / "articulated").glob("*.c"))]
+    folders = [core / "include", folder, *{file.parent for file in files}]
+    flags = ["-std=c99", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections",
+             '-DLACONIC_SCENE_HEADER="laconic_scene.h"', *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+    words = [*flags, *(f"-I{each}" for each in folders), *map(str, files), "main.c", "laconic_scene_model.c"]
+    return words, [now.x_m, now.y_m, now.heading_rad, now.energy_J, *now.hinge_angle_rad, *now.wheel_angle_rad]
+
+
+@needs_gcc
+@pytest.mark.parametrize(("name", "real"), [("mir_like", "double"), ("frc_swerve_mk4i", "single"), *(
+    pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("f1tenth", "double"), ("tricycle_agv", "single"), ("pr2_base", "double"), ("tugger_train", "single"),
+        ("wheel_loader", "double"), ("wheelchair", "single")))])
+def test_a_trimmed_core_with_hinges_gives_the_same_bits_as_the_whole_one(name: str, real: str, tmp_path: Path):
+    words, expected = tree_sources(read_scene(name), real, tmp_path)
+    run_tool(["gcc", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Werror", *words, "-o", "trimmed"], tmp_path)
+    found = [float.fromhex(word) for word in run_tool([str(tmp_path / "trimmed")]).split()]
+    assert found == expected and max(map(abs, found)) > 1e-3
+    symbols = run_tool(["nm", "trimmed"], tmp_path)
+    assert "laconic_articulated_step" in symbols and "articulated_prepare" not in symbols
+
+
+def deepest(folder: Path, start: str) -> int:
+    """Bytes of stack of the deepest chain of calls, from the graphs that gcc writes."""
+    frame, calls = dict[str, int](), dict[str, set[str]]()
+    for graph in folder.glob("*.ci"):
+        text = graph.read_text(encoding="utf-8")
+        local = {title: title.rpartition(":")[2] for title in re.findall(r'title: "([^"]+)"', text)}
+        sizes = re.findall(r'node: \{ title: "([^"]+)" label: "[^"]*?(\d+) bytes \((?:static|dynamic)', text)
+        frame |= {local[title]: int(size) for title, size in sizes}
+        for caller, callee in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
+            calls.setdefault(caller.rpartition(":")[2], set()).add(callee.rpartition(":")[2])
+    known: dict[str, int] = {}
+
+    def below(name: str) -> int:
+        if name not in known:
+            known[name] = 0  # the core has no recursion
+            known[name] = frame.get(name, 0) + max((below(each) for each in calls.get(name, ())), default=0)
+        return known[name]
+
+    return below(start)
+
+
+@pytest.mark.nightly
+@needs_board
+@pytest.mark.parametrize("name", ["mir_like", "f1tenth", "tricycle_agv", "frc_swerve_mk4i", "tugger_train"])
+def test_flash_and_stack_of_a_step_with_hinges_on_a_cortex_m4f_are_printed(
+        name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """A bar for each: the constants of a scene and all four methods, without preparation."""
+    words, _ = tree_sources(read_scene(name), "single", tmp_path)
+    program = (tmp_path / "main.c").read_text(encoding="utf-8")
+    shown = program[: program.index("    laconic_articulated_motion_of")].replace("#include <stdio.h>\n", "")
+    (tmp_path / "main.c").write_text(shown.replace("    laconic_articulated_motion now;\n", "") + "    return 0;\n}\n",
+                                     encoding="utf-8")
+    run_tool([M4F.tool("gcc"), *M4F.flags, "-Os", "-fcallgraph-info=su", *words, "-nostartfiles", "-Wl,-e,main", "-o",
+              "board"], tmp_path)
+    text, data, bss = map(int, run_tool([M4F.tool("size"), "board"], tmp_path).splitlines()[1].split()[:3])
+    stack = deepest(tmp_path, "laconic_articulated_step")
+    state = load("single").ffi.sizeof("laconic_articulated_state")
+    with capsys.disabled():
+        print(f"\n{name}: flash {text + data} bytes with constants, stack of a step {stack} bytes, static RAM {bss} "
+              f"bytes; a state of this build with 8 bodies has {state} bytes")
+    assert 5_000 < text + data < 60_000 and 500 < stack < 16_000 and data + bss == 0

@@ -49,7 +49,8 @@ class InProcess(NodeVehicle):
                  "velocity_body_m_per_s[1]": float(now.velocity_m_per_s[0]),
                  "velocity_body_m_per_s[2]": float(now.velocity_m_per_s[1]),
                  "yaw_rate_rad_per_s": float(now.yaw_rate_rad_per_s)}
-        driven = [index for index, has_drive in enumerate(self.settings.driven, start=1) if has_drive]
+        wheels = self.settings.driven[: self.scene.wheel_count]
+        driven = [index for index, has_drive in enumerate(wheels, start=1) if has_drive]
         for number, wheel in enumerate(driven):
             if library.lib.laconic_library_drive_view(self.node.c, number, self._view):
                 found |= {f"wheel_angle_rad[{wheel}]": float(self._view.wheel_angle_rad),

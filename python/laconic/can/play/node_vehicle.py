@@ -26,6 +26,7 @@ from laconic.can.play.vehicle import played, without_sensors
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import BusDied, NodeRefused, NodeSilent
 from laconic.can.rig.faults import error_frame
+from laconic.can.rig.hinged import HingedTwin, load_hinged
 from laconic.can.rig.link import receive_on, send_on
 from laconic.can.rig.lockstep import load_scene
 from laconic.can.rig.stopping import RUNNING, come_to_rest, stop_running
@@ -36,6 +37,7 @@ from laconic.scene import Scene
 POLL_US = 500                 # a node behind a serial line is asked so often
 LOOK_US = 10_000              # drives in this process are looked at so often
 PATIENCE_S = 0.5              # for the figures at the end
+MOTION = ("NU", "VELOCITY")   # frames that tell it, of vehicles without and with hinges
 SOME_DRIVE = "a drive heard no controller in time"  # all that HEARTBEAT tells
 FAULT_WATCHDOG = 32           # LACONIC_DRIVE_FAULT_WATCHDOG
 
@@ -68,13 +70,19 @@ class NodeVehicle:
             self._notes.append(f"the node was found in state {found} and has been stopped before")
         self.client.link.listeners.append(self._hear_early)
         try:
-            load_scene(self.client, without_sensors(played(self.scene)), drive_parameters(self.settings))
+            self._load(without_sensors(played(self.scene)))
             self.choose_frames(*self.watched)
             self.client.start_drives()
         except NodeRefused as refused:
             raise BadInput(f"{self.scene.path}: rig.drives: {refused}; {remedy(refused, self.scene)}") from None
         finally:
             self.client.link.listeners.remove(self._hear_early)
+
+    def _load(self, scene: Scene) -> None:
+        if scene.has_hinges:
+            load_hinged(self.client, HingedTwin(scene), drive_parameters(self.settings))
+        else:
+            load_scene(self.client, scene, drive_parameters(self.settings))
 
     def _hear_early(self, message: can.Message) -> None:
         if not self.is_own(message):
@@ -100,7 +108,7 @@ class NodeVehicle:
 
     def _look_at(self, frame: Frame, data: bytes) -> None:
         """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has ever fired; NU the motion."""
-        if frame.name == "NU":
+        if frame.name in MOTION:
             self._last_nu = (frame, data)
         if frame.name == "RESULT":
             self._orders.take(frame.unpack(data))
@@ -152,7 +160,7 @@ class NodeVehicle:
     @property
     def tells_motion(self) -> bool:
         """Whether NU comes while it plays."""
-        return "NU" in self.watched
+        return bool({*MOTION} & {*self.watched})
 
     def pose(self) -> Pose | None:
         """At the end, by POSE: to a millimetre, within what that frame can tell."""
@@ -163,6 +171,9 @@ class NodeVehicle:
         if self._last_nu is None:
             return 0.0, 0.0
         frame, data = self._last_nu
+        if frame.name == "VELOCITY":
+            values = frame.physical(data)
+            return math.hypot(values["ahead"], values["left"]), abs(values["yaw_rate"])
         raw = frame.unpack(data)
         ahead, sideways, turning = (raw[f"nu_{k}"] * frame.fields[f"nu_{k}"].scale for k in (1, 2, 3))
         if self._model is None:

@@ -15,6 +15,7 @@ from laconic.can.rig.bus_options import read_bus_options
 from laconic.can.rig.buses import open_bus
 from laconic.can.rig.options import check_bitrate
 from laconic.errors import BadInput
+from laconic.pictures.views.recorded import Recorded
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,14 @@ class PlayOptions:
     stop_within_s: float | None = None
     stop_distance_m: float | None = None
     bag: Path | None = None
+    storage: str | None = None
+    foxglove: Path | None = None
+    rerun: Path | None = None
+
+    @property
+    def recorded(self) -> Recorded:
+        """Where the run is written or shown besides its log."""
+        return Recorded(self.bag, self.storage, self.foxglove, self.rerun)
 
     @property
     def is_served(self) -> bool:

@@ -31,6 +31,7 @@ from laconic.can.rig.choices import ON_BUS
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.link import Clock, Link
 from laconic.can.rig.options import read_id_base
+from laconic.errors import BadInput
 from laconic.scene import Scene
 
 
@@ -137,7 +138,7 @@ class OfNode(Place):
         self.last_words: list[str] = []  # of that process
         self.serves_itself = options.is_served and options.listen is not None
         self.remark = silent_sensors(scene)
-        self.can_fail = drives_can_fail(self.settings, options)
+        self.can_fail = drives_can_fail(self.settings, options, has_hinges=scene.has_hinges)
 
     @contextmanager
     def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:
@@ -186,10 +187,13 @@ class OfNode(Place):
     def playing(self, vehicle: NodeVehicle) -> AbstractContextManager[Any]:
         """The node plays, and is at rest at the end."""
         if self.options.limits.are_given and not vehicle.tells_motion:
-            vehicle.watched = (*vehicle.watched, "NU")
+            vehicle.watched = (*vehicle.watched, "VELOCITY" if self.scene.has_hinges else "NU")
         return running(vehicle)
 
 
 def place_of(scene: Scene, options: PlayOptions) -> Place:
     """The place that the options choose; BadInput for what is wrong with scene, drives, DBC or map."""
+    if scene.has_hinges and (options.dbc is not None or options.bag is not None):
+        raise BadInput(f"{scene.path}: --{'dbc' if options.dbc is not None else 'bag'} does not take vehicles with "
+                       "hinges yet; leave it out" + ("" if options.dbc is None else ", and give --drives"))
     return OfMap(scene, options) if options.dbc is not None else OfNode(scene, options)

@@ -16,7 +16,7 @@ from laconic.can.play.places import Place, Played, place_of
 from laconic.can.play.settings import DriveSettings, as_values
 from laconic.can.play.trouble import Trouble
 from laconic.can.play.vehicle import check_playable
-from laconic.can.rig.bagged import played_bag
+from laconic.can.rig.bagged import played_views
 from laconic.can.rig.errors import BusDied, Interrupted
 from laconic.can.rig.interruption import Interruption
 from laconic.can.rig.link import Clock
@@ -41,7 +41,7 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     read_bus_faults(options.bus_faults, place.can_fail, options.random_seed)
     traffic, seconds, lost = Traffic(clock or Clock()), Seconds(), Lost()
     with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), \
-            logged(traffic, options.logs, lost), played_bag(vehicle, scene, options.bag) as recorders, \
+            logged(traffic, options.logs, lost), played_views(vehicle, scene, options.recorded) as recorders, \
             shown(traffic, scene, options) as moved:
         traffic.may_go_on = signals.check
         trouble, journey = Trouble(place, options, vehicle, traffic, bus), Journey(vehicle)

@@ -3,7 +3,7 @@ loop gains from the inertia that a wheel turns."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from laconic.can.rig.options import in_hex, read_id_base
 from laconic.can.rig.wire import ID_STRIDE
 from laconic.errors import BadInput, nearest_of
 from laconic.scene import Scene
-from laconic.scene.drives import DRIVE_PROTOCOLS, NUMBERS, Drives
+from laconic.scene.drives import DRIVE_PROTOCOLS, NUMBERS, Drives, axes_with_motors
 
 SPEED_BANDWIDTH_RAD_PER_S = 30.0
 STEPS_PER_RADIAN = 10.0            # the speed loop's bandwidth is at most the step rate over this
@@ -31,7 +31,8 @@ Origin = tuple[tuple[float, ...], str]
 
 @dataclass(frozen=True)
 class DriveSettings:
-    """The settings of all drives of one vehicle; each tuple has one entry for each wheel, 0 where there is no drive."""
+    """The settings of all drives of one vehicle; each tuple has one entry for each wheel, then for each hinge, 0 where
+    there is no drive."""
 
     protocol: DriveProtocol
     driven: tuple[bool, ...]
@@ -58,7 +59,7 @@ class DriveSettings:
 def drive_settings(scene: Scene, protocol: str | None, id_base: str | None = None) -> DriveSettings:
     """The drives of a scene; `protocol` and `id_base` are those of the command line. BadInput names the key that nobody
     gives."""
-    given = scene.rig.drives or Drives(driven=tuple(bool(each.get("driven", True)) for each in scene.vehicle["wheel"]))
+    given = scene.rig.drives or Drives(driven=tuple(axes_with_motors(scene.vehicle["wheel"], scene.hinges)))
     chosen = OF_MAP if protocol == OF_MAP.name else PROTOCOLS[protocol_of(scene, given, protocol)]
     if not any(given.driven):
         raise BadInput(f"{scene.path}: vehicle.wheel: none is driven, so there is nothing that a drive could turn; "
@@ -123,12 +124,13 @@ def origin_of(scene: Scene, given: Drives, protocol: DriveProtocol, key: str,
     """The values of one key and where they come from; `before` are those of the keys before it."""
     count = len(given.driven)
     motor, limits = scene.vehicle.get("motor", {}), scene.vehicle.get("drive", {})
+    steered = [dict(hinge.motor) for hinge in scene.hinges]
     if key in given.numbers:
         return given.numbers[key], "rig.drives"
     if key in DERIVED:
         return DERIVED[key](scene, given, before), DERIVED_TEXT[key]
-    if key in OF_MOTOR and has_own(motor, key):
-        return (motor[OF_MOTOR[key]],) * count, f"vehicle.motor.{OF_MOTOR[key]}"
+    if key in OF_MOTOR and (has_own(motor, key) or any(has_own(each, key) for each in steered)):
+        return of_motors(scene, given, protocol, key, [*[motor] * scene.wheel_count, *steered], before)
     if key in OF_DRIVE and limits.get(key):
         return (limits[key],) * count, f"vehicle.drive.{key}"
     if key in protocol.usual and not (motor and key == "winding_resistance_ohm"):
@@ -139,6 +141,26 @@ def origin_of(scene: Scene, given: Drives, protocol: DriveProtocol, key: str,
         return (0.0,) * count, MAY_BE_ZERO[key]
     where = " or [vehicle.motor]" if key in OF_MOTOR else " or [vehicle.drive]" if key in OF_DRIVE else ""
     raise BadInput(f"{scene.path}: rig.drives.{key}: is missing, and {protocol.name} has no usual one; give it{where}")
+
+
+def of_motors(scene: Scene, given: Drives, protocol: DriveProtocol, key: str, motors: Sequence[dict[str, float]],
+              before: dict[str, tuple[float, ...]]) -> Origin:
+    """Of the motors that have the number; of other axes the protocol's usual one."""
+    values = []
+    for axis, (motor, has_drive) in enumerate(zip(motors, given.driven, strict=True)):
+        if has_own(motor, key):
+            values.append(motor[OF_MOTOR[key]])
+        elif key in protocol.usual:
+            values.append(float(protocol.usual[key]))
+        elif key == "back_emf_Vs_per_rad":
+            values.append(before["torque_constant_Nm_per_A"][axis])
+        elif not has_drive or key in MAY_BE_ZERO:
+            values.append(0.0)
+        else:
+            raise BadInput(f"{scene.path}: rig.drives.{key}: is missing for axis {axis + 1}, and {protocol.name} has "
+                           "no usual one; give a list with one for each wheel and then for each hinge")
+    of_axes = ", and of steering motors" if any(has_own(motor, key) for motor in motors[scene.wheel_count :]) else ""
+    return tuple(values), f"vehicle.motor.{OF_MOTOR[key]}{of_axes}"
 
 
 def has_own(motor: dict[str, float], key: str) -> bool:

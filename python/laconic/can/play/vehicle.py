@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -23,7 +24,16 @@ def played(scene: Scene) -> Scene:
         vehicle["motor"] = vehicle["motor"] | {"torque_constant_Nm_per_A": 0.0, "back_emf_Vs_per_rad": 0.0}
     else:
         vehicle |= dict.fromkeys(OWN_MOTOR, 0.0)
+    if scene.has_hinges:  # the drive of a steering axis is its motor, too
+        vehicle["body"] = [body | _without_motor(dict(hinge.motor)) if hinge.kind == "motor" else body
+                           for body, hinge in zip(vehicle["body"], scene.hinges, strict=True)]
     return replace(scene, vehicle=vehicle, inputs=())
+
+
+def _without_motor(motor: dict[str, float]) -> dict[str, float]:
+    """What is left of a hinge's motor: the viscous friction of one that is given at its shaft."""
+    friction = motor.get("gear_ratio", 0.0) ** 2 * motor.get("viscous_friction_Nms", 0.0)
+    return {"gain_Nm_per_V": 0.0, "damping_Nms": friction}
 
 
 def without_sensors(scene: Scene) -> Scene:
@@ -48,14 +58,19 @@ def coasts_for_ever(scene: Scene) -> bool:
 
 def moved_inertia(scene: Scene, driven: Sequence[bool]) -> tuple[float, ...]:
     """The inertia about each wheel's axle that its drive turns [kg·m²]: the wheel's own, rotor included, and a share of
-    the vehicle's mass, which all drives move together."""
-    vehicle = scene.c_vehicle(scene.core())
-    mass_kg = float(vehicle.mass_kg) + float(vehicle.payload.mass_kg)
-    found = []
-    for wheel, has_drive in zip(vehicle.wheel, driven, strict=False):
+    the vehicle's mass, which all drives move together. Behind the wheels that of each hinge about its axis: its body's.
+    """
+    core, bodies = scene.core(), scene.vehicle["body"] if scene.has_hinges else ()
+    vehicle = scene.articulated_vehicle(core).c.base if scene.has_hinges else scene.c_vehicle(core)
+    mass_kg = float(vehicle.mass_kg) + float(vehicle.payload.mass_kg) + sum(body["mass_kg"] for body in bodies)
+    found, count = [], scene.wheel_count
+    for wheel, has_drive in zip(vehicle.wheel, driven[:count], strict=False):
         radius_m = float(wheel.own_radius_m or vehicle.wheel_radius_m)
         own_kgm2 = float(wheel.own_inertia_kgm2 or vehicle.wheel_inertia_kgm2)
-        found.append(own_kgm2 + mass_kg * radius_m**2 / sum(driven) if has_drive else 0.0)
+        found.append(own_kgm2 + mass_kg * radius_m**2 / sum(driven[:count]) if has_drive else 0.0)
+    for body, has_drive in zip(bodies, driven[count:], strict=True):
+        arm_m = math.hypot(body.get("com_x_m", 0.0), body.get("com_y_m", 0.0))
+        found.append(body["yaw_inertia_kgm2"] + body["mass_kg"] * arm_m**2 if has_drive else 0.0)
     return tuple(found)
 
 
@@ -63,3 +78,6 @@ def check_playable(scene: Scene) -> None:
     """BadInput for a vehicle that no drive can move."""
     if not scene.vehicle["wheel"]:
         raise BadInput(f"{scene.path}: vehicle.wheel: there is none; a vehicle that is played needs a wheel")
+    if coordinated := [hinge for hinge in scene.hinges if hinge.kind == "coordinated"]:
+        raise BadInput(f"{scene.path}: {coordinated[0].place}.steered: drives turn each steering axis by itself, and "
+                       "coordinated ones turn together; give one axis \"prescribed\" or \"motor\"")

@@ -1,12 +1,11 @@
-"""A run of `laconic rig` or `laconic play` as topics of ROS 2, written while it runs."""
+"""A run of `laconic rig` or `laconic play` for recordings and viewers, instant by instant while it runs."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import can
 import numpy as np
@@ -14,21 +13,21 @@ import numpy as np
 from laconic.can.rig.link import Link
 from laconic.can.rig.wire import WHEELS_A_GROUP, Frame, wire
 from laconic.errors import BadInput
+from laconic.pictures.views.recorded import Recorded, open_viewers
+from laconic.pictures.views.robot_view import Viewer
 from laconic.scene import Scene
 from laconic.scene.ground import slips
-
-if TYPE_CHECKING:
-    from laconic.robot.bags.run_topics import RunTopics
 
 LOOK_US = 10_000     # between two instants of a played vehicle
 
 
-class FrameTopics:
+class FrameViews:
     """Listens to a node's frames with signals: one instant once pose and all wheels have come anew. In free run it
     sends no wheel speeds; without slip they follow from its pseudo-velocities."""
 
-    def __init__(self, topics: RunTopics, scene: Scene, id_base: int, now_s: Callable[[], float], *, is_free: bool):
-        self.topics, self.id_base, self.now_s = topics, id_base, now_s
+    def __init__(self, viewers: Sequence[Viewer], scene: Scene, id_base: int, now_s: Callable[[], float], *,
+                 is_free: bool):
+        self.viewers, self.id_base, self.now_s = viewers, id_base, now_s
         self._by_nu = None
         self._has_wheels = not is_free
         if is_free and not slips(scene.vehicle):
@@ -51,7 +50,9 @@ class FrameTopics:
         self._signals |= found
         self._due -= set(found)
         if found and not self._due:
-            self.topics.take(self.now_s(), self._signals)
+            now_s = self.now_s()
+            for viewer in self.viewers:
+                viewer.take(now_s, self._signals)
             self._due = self._expected()
 
     def _of(self, frame: Frame, data: bytes) -> dict[str, float]:
@@ -71,32 +72,30 @@ class FrameTopics:
 
 
 @contextmanager
-def bagged(link: Link, scene: Scene, id_base: int, mode: str, path: Path | None) -> Iterator[None]:
-    """Writes what a node sends, up to the end of the run, early or not."""
-    if path is None:
+def viewed(link: Link, scene: Scene, id_base: int, mode: str, recorded: Recorded) -> Iterator[None]:
+    """Writes or shows what a node sends, up to the end of the run, early or not."""
+    if not recorded:
         yield
         return
     if mode == "same-bits":
-        raise BadInput(f"--bag {path}: needs frames with signals, and --same-bits has raw ones; leave one of them out")
-    from laconic.robot.bags.run_topics import RunTopics, open_bag  # where a bag is wanted, and only there
-
+        raise BadInput(f"{recorded.first}: needs frames with signals, and --same-bits has raw ones; leave one of them "
+                       "out")
     steps = itertools.count(1)
     began_us = link.clock.now_us()
 
     def now_s() -> float:
         return (link.clock.now_us() - began_us) / 1e6 if mode == "free-run" else next(steps) * scene.run.step_s
 
-    with open_bag(path) as bag:
-        link.listeners.append(FrameTopics(RunTopics(scene, bag), scene, id_base, now_s,
-                                          is_free=mode == "free-run").take)
+    with open_viewers(recorded, scene) as viewers:
+        link.listeners.append(FrameViews(viewers, scene, id_base, now_s, is_free=mode == "free-run").take)
         yield
 
 
-class PlayTopics:
+class PlayViews:
     """Looks at a played vehicle at even instants; called in the loop."""
 
-    def __init__(self, topics: RunTopics, look: Callable[[], Mapping[str, float]]):
-        self.topics, self.look = topics, look
+    def __init__(self, viewers: Sequence[Viewer], look: Callable[[], Mapping[str, float]]):
+        self.viewers, self.look = viewers, look
         self._began_us: int | None = None
         self._next_us = 0
 
@@ -104,20 +103,21 @@ class PlayTopics:
         if self._began_us is None:
             self._began_us = self._next_us = now_us
         if now_us >= self._next_us:
-            self.topics.take((now_us - self._began_us) / 1e6, self.look())
+            time_s, signals = (now_us - self._began_us) / 1e6, self.look()
+            for viewer in self.viewers:
+                viewer.take(time_s, signals)
             self._next_us = max(self._next_us + LOOK_US, now_us + 1)
         return self._next_us
 
 
 @contextmanager
-def played_bag(vehicle: Any, scene: Scene, path: Path | None) -> Iterator[list[Callable[[int], int | None]]]:
-    """What the loop calls, so that a played vehicle is written; nothing where no bag is wanted."""
-    if path is None:
+def played_views(vehicle: Any, scene: Scene, recorded: Recorded) -> Iterator[list[Callable[[int], int | None]]]:
+    """What the loop calls, so that a played vehicle is written or shown; nothing where nobody wants that."""
+    if not recorded:
         yield []
         return
     if (look := getattr(vehicle, "signals", None)) is None:
-        raise BadInput(f"--bag {path}: needs a vehicle in this process, whose motion can be seen; leave --board out")
-    from laconic.robot.bags.run_topics import RunTopics, open_bag
-
-    with open_bag(path) as bag:
-        yield [PlayTopics(RunTopics(scene, bag), look)]
+        raise BadInput(f"{recorded.first}: needs a vehicle in this process, whose motion can be seen; leave --board "
+                       "out")
+    with open_viewers(recorded, scene) as viewers:
+        yield [PlayViews(viewers, look)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-LOGS = (".blf", ".asc", ".log", ".trc")
+LOGS = (".blf", ".asc", ".log", ".trc", ".mf4")
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,8 @@ BOARDS = {board.name: board for board in (
     Board("an386", "mps2-an386", "single", "Arm MPS2, Cortex-M4F"),
     Board("an500", "mps2-an500", "double", "Arm MPS2, Cortex-M7"),
     Board("microbit", "microbit", "single", "BBC micro:bit, Cortex-M0"),
+    Board("an386-hinges", "mps2-an386", "single", "Cortex-M4F, for vehicles with hinges"),
+    Board("an500-hinges", "mps2-an500", "double", "Cortex-M7, for vehicles with hinges"),
     Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"),
     Board("an386-drives", "mps2-an386", "single", "the same with RoboMaster drives"),
     Board("an386-odrive", "mps2-an386", "single", "the same with ODrives"),

@@ -29,6 +29,7 @@ class Identity:
     methods: int
     can_fd: bool
     protocol: int
+    hinges: bool = False  # vehicles with hinges
 
 
 class NodeClient:
@@ -257,4 +258,5 @@ def identity_of(values: dict[str, int]) -> Identity:
     """Identity from the raw values of IDENTITY."""
     version = ".".join(str(values[f"version_{part}"]) for part in ("major", "minor", "patch"))
     real = {4: "single", 8: "double"}.get(values["scalar_bytes"], f"{values['scalar_bytes']} bytes")
-    return Identity(version, real, values["max_wheels"], values["methods"], bool(values["can_fd"]), values["protocol"])
+    return Identity(version, real, values["max_wheels"], values["methods"], bool(values["can_fd"]), values["protocol"],
+                    bool(values["hinges"]))

@@ -55,6 +55,10 @@ def _of_system(error: OSError) -> str:
     return os.strerror(number).lower() if number > 0 else reason_of(error)
 
 
+class RunEnds(ResultFails):
+    """A limit or a stop of a hinge ends the run of the scene."""
+
+
 class Interrupted(LaconicError):
     """A signal has ended the run; the exit status is the shell's for that signal: 130 for SIGINT, 143 for SIGTERM."""
 
@@ -63,4 +67,4 @@ class Interrupted(LaconicError):
         self.exit_status = 128 + number
 
 
-ENDINGS = (BusDied, NodeSilent, NodeRefused, Interrupted)  # of a run before its last step
+ENDINGS = (BusDied, NodeSilent, NodeRefused, RunEnds, Interrupted)  # of a run before its last step

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from laconic.can.rig.client import NodeClient
-from laconic.can.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
+from laconic.can.rig.free_run import CYCLE_S, DEFAULT_FRAMES, HINGED_FRAMES, FreeRun, run_free
+from laconic.can.rig.hinged import HingedTwin, resting_row, run_commanded
 from laconic.can.rig.judge import link_verdict
 from laconic.can.rig.latency import period_figures
 from laconic.can.rig.scaled import expected_raw, rounding_limit
@@ -25,6 +26,8 @@ TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group
 
 def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
     """The values, for every answer, of a twin on which commands act `delay` periods later."""
+    if scene.has_hinges:
+        return hinged_twin_values(scene, run, delay, per_period)
     twin = twin_of(scene, scene.plant(scene.core()), scene.rig.frames)
     wanted: dict[int, list[tuple[str, int, Frame]]] = {}
     for step, frame, data in run.answers:
@@ -43,6 +46,23 @@ def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> Twin
     return found
 
 
+def hinged_twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
+    """The same of a vehicle with hinges."""
+    twin = HingedTwin(scene)
+    wanted: dict[int, list[tuple[str, int, Frame]]] = {}
+    for step, frame, data in run.answers:
+        wanted.setdefault(step, []).append((frame.name, part_of(frame, frame.unpack(data)), frame))
+    acting = {seen + delay: rows for seen, rows in run.commands}
+    last, now = max(wanted, default=0), resting_row(twin)
+    found: TwinValues = {}
+    events = sorted({0, *(step for step in acting if step < last), *wanted})
+    for step, following in zip(events, [*events[1:], last], strict=True):
+        for name, group, frame in wanted.get(step, ()):
+            found[step, name, group] = expected_raw(twin.plant, frame, group)
+        now = run_commanded(twin.plant, now, acting.get(step), (following - step) * per_period)
+    return found
+
+
 class Free(Trial):
     """A free run against twins with delays from 0 to the latency."""
 
@@ -54,7 +74,8 @@ class Free(Trial):
         self.rate_Hz = rate_Hz or round(1.0 / scene.run.step_s)
         super().__init__(node, scene, round(duration_s * self.rate_Hz))
         self.mode = f"free run at {self.rate_Hz} Hz"
-        self.given = (duration_s, rate_Hz, watchdog_ms, scene.rig.frames or DEFAULT_FRAMES)
+        usual = HINGED_FRAMES if scene.has_hinges else DEFAULT_FRAMES
+        self.given = (duration_s, rate_Hz, watchdog_ms, scene.rig.frames or usual)
         self.tolerances, self.latency_s, self.run = tolerances, latency_s, FreeRun()
 
     def run_it(self, moved: Moved) -> None:

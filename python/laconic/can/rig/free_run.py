@@ -12,9 +12,10 @@ import numpy as np
 
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import NodeRefused, NodeSilent
+from laconic.can.rig.hinged import check_hinged_frames
 from laconic.can.rig.lockstep import load_scene
 from laconic.can.rig.punctuality import Punctuality
-from laconic.can.rig.scaled import ANSWERS, Held, Voltages, check_voltages_only, select_bits
+from laconic.can.rig.scaled import ANSWERS, Held, Hinged, Voltages, check_voltages_only, select_bits
 from laconic.can.rig.silence import Silence
 from laconic.can.rig.wire import Frame, wire
 from laconic.errors import BadInput
@@ -23,6 +24,8 @@ from laconic.scene import Scene
 CYCLE_S = 0.01          # of VOLTAGE, as in the contract
 LONGEST_CATCH_UP_US = 1_000_000
 DEFAULT_FRAMES = ("NU", "POSE")
+HINGED_FRAMES = ("VELOCITY", "POSE", "HINGE_ANGLE")  # where the scene has hinges
+COUNTED = ("NU", "VELOCITY")                         # one a period, of vehicles without and with hinges
 MOST_COMPARED = 5000    # periods; of a longer run every n-th
 
 
@@ -55,20 +58,27 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     """Loads a scene and lets the node run for so long. Frames are put into `run`, where one is given, so that they are
     kept even if the run ends early."""
     check_voltages_only(scene)
-    if "NU" not in frames:
-        raise BadInput(f"{scene.path}: rig.frames: a free run counts its steps by NU; add it")
+    counted = COUNTED[scene.has_hinges]
+    check_hinged_frames(scene, frames)
+    if counted not in frames:
+        raise BadInput(f"{scene.path}: rig.frames: a free run counts its steps by {counted}; add it")
     run = run or FreeRun()
     run.rate_Hz = rate_Hz or round(1.0 / scene.run.step_s)
     run.keep = max(1, round(duration_s * run.rate_Hz / MOST_COMPARED))
-    load_scene(node, scene)
+    held: Held | Hinged
+    if scene.has_hinges:
+        held = Hinged(node, scene, scene.steps())
+    else:
+        load_scene(node, scene)
+        held = Held(scene.inputs_on_grid())
     node.select(**select_bits({*frames, "COUNTERS"}))
-    voltages, held = Voltages(node, scene), Held(scene.inputs_on_grid())
+    voltages = Voltages(node, scene)
     start_us = node.link.clock.now_us()
     start_clock(node, scene, rate_Hz, watchdog_ms)
     run.punctuality = Punctuality(node.link.clock, CYCLE_S, watchdog_ms)
     run.silence = Silence((*frames, "HEARTBEAT", "COUNTERS"), 1.0 / run.rate_Hz, run.punctuality.now_us())
     try:
-        follow(run, voltages, held, start_us, start_us + int(1e6 * duration_s), moved)
+        follow(run, voltages, held, scene.run.step_s, start_us, start_us + int(1e6 * duration_s), moved)
     finally:
         run.elapsed_s = (node.link.clock.now_us() - start_us) / 1e6
         run.punctuality.ended()
@@ -79,18 +89,18 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     return run
 
 
-def follow(run: FreeRun, voltages: Voltages, held: Held, start_us: int, end_us: int,
+def follow(run: FreeRun, voltages: Voltages, held: Held | Hinged, step_s: float, start_us: int, end_us: int,
            moved: Callable[[float], None]) -> None:
-    """Voltages out in their cycle, answers in, until the end."""
+    """Commands out in their cycle, answers in, until the end."""
     node, rig = voltages.node, run.punctuality
-    clock, step_s = node.link.clock, held.step_s
+    clock = node.link.clock
     while (now_us := clock.now_us()) < end_us:
         if rig.is_late():  # frames that wait to be read give the node's present step
             catch_up(run, node, now_us + rig.cycle_us)
         if rig.is_due():
             tick = int((clock.now_us() - start_us) / 1e6 / step_s)
-            run.commands.append((run.steps, voltages.send(held.at(tick))))
-            run.overranges = voltages.overranges
+            run.commands.append((run.steps, held.send(voltages, tick, sync=False)))
+            run.overranges = voltages.overranges + held.overranges
             rig.sent()
             moved(CYCLE_S)
         if not listen(run, node, min(rig.next_us, end_us)):
@@ -131,7 +141,7 @@ def start_clock(node: NodeClient, scene: Scene, rate_Hz: int, watchdog_ms: int) 
 
 def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
     """One frame of the node."""
-    if frame.name == "NU":
+    if frame.name in COUNTED:
         run.steps += 1 + node.link.lost_before(frame)
         run.instants_s.append(node.link.clock.now_us() / 1e6)
         run.instant_steps.append(run.steps)

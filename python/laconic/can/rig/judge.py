@@ -31,9 +31,11 @@ class SameBits(Trial):
 
     def judge_it(self, judgement: Judgement) -> None:
         run, count = self.run, self.scene.wheel_count
-        theirs = twin_states(self.scene, run)
+        theirs = run.hinged_states if run.hinged else twin_states(self.scene, run)
         parts = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
                  "wheel_angle": slice(6 + count, 6 + 2 * count)}
+        if run.hinged:
+            parts = run.hinged.parts()
         if has_sensors(self.scene):
             end = 6 + 2 * count
             parts |= {"acceleration_body": slice(end, end + 2), "imu": slice(end + 2, end + 5),

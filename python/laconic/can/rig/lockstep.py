@@ -20,6 +20,7 @@ import numpy as np
 from laconic.can.rig.client import Identity, NodeClient
 from laconic.can.rig.errors import NodeSilent
 from laconic.can.rig.estimated import is_estimated
+from laconic.can.rig.hinged import RAW_OUTPUTS, HingedTwin, load_hinged, raw_columns, raw_groups
 from laconic.can.rig.parameters import Parameter, method_number
 from laconic.can.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
 from laconic.can.rig.wire import wire
@@ -48,6 +49,8 @@ class LockstepRun:
     frames_out: int = 0
     frames_in: int = 0
     twin: Plant = field(init=False)  # plant of the core, at the start; set when the scene is loaded
+    hinged: HingedTwin | None = None  # instead of it, of a scene with hinges: it moves along …
+    hinged_rows: list[np.ndarray] = field(default_factory=list)  # … and these are its outputs
 
     @cached_property
     def ticks(self) -> np.ndarray:
@@ -59,6 +62,11 @@ class LockstepRun:
         """ν(3), x, y, heading, wheel speeds (N), wheel angles (N), one row an exchange; of a scene with sensors then
         acceleration_body_m_per_s2 (2), imu_acceleration_m_per_s2 (2), imu_yaw_rate_rad_per_s, encoder_count (N)."""
         return np.array([row for _, row in self.exchanges])
+
+    @property
+    def hinged_states(self) -> np.ndarray:
+        """Of a vehicle with hinges, its rows at the same steps."""
+        return np.array(self.hinged_rows[: len(self.exchanges)])
 
     @property
     def steps(self) -> int:
@@ -203,16 +211,42 @@ class RawStream:
             yield begin, end - begin, row
 
 
+class HingedStream(RawStream):
+    """Those of a scene with hinges: inputs at the start and end of each step."""
+
+    def __init__(self, node: NodeClient, scene: Scene, twin: HingedTwin, fd: bool = False):
+        self.twin = twin
+        super().__init__(node, scene, fd)
+        self.groups = self.groups or ["take_voltage"]
+        self.of_hinges = raw_groups(twin)
+        self.columns = np.array([*self._columns(scene.wheel_count), *raw_columns(twin, self.of_hinges)], dtype=int)
+        self.row_length, self.has_sensors, self.sampled = len(twin.raw_row()), False, True
+
+    def select(self) -> None:
+        """Selects the numbers that go over the bus."""
+        self.node.select(**dict.fromkeys([*self.groups, *self.of_hinges, *RAW_OUTPUTS, "take_sampled"], 1),
+                         raw_fd=int(self.fd))
+
+    def exchanges(self, steps: int, every: int) -> Iterator[tuple[int, int, np.ndarray | None]]:
+        """One step each, with the rows of its start and end."""
+        for at, rows in enumerate(self.twin.steps(steps)):
+            yield at, 1, rows.astype(self.core.dtype)
+
+
 def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
                  resend: bool = False, moved: Callable[[int], None] = lambda _: None,
                  run: LockstepRun | None = None) -> LockstepRun:
     """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time). The
     answers are put into `run`, where one is given, so that they are kept even if the run ends early."""
     run = run or LockstepRun()
-    run.twin = load_scene(node, scene)
+    if not scene.has_hinges:
+        run.twin = load_scene(node, scene)
     if steps is not None and steps > scene.steps():
         scene = scene.with_run(duration_s=steps * scene.run.step_s)
-    stream = RawStream(node, scene, fd)
+    if scene.has_hinges:
+        run.hinged = HingedTwin(scene)
+        load_hinged(node, run.hinged)
+    stream = HingedStream(node, scene, run.hinged, fd) if run.hinged else RawStream(node, scene, fd)
     stream.select()
     node.start_lockstep()
     link = node.link
@@ -226,6 +260,8 @@ def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, ev
             stream.sync(count)
             run.exchanges.append((first + count, stream.receive_state()))
             run.latencies_s.append(time.perf_counter() - sent)
+            if run.hinged:
+                run.hinged_rows.append(run.hinged.raw_row())
             moved(count)
     finally:
         run.seconds = time.perf_counter() - began

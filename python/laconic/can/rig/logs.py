@@ -15,7 +15,7 @@ from laconic.base.text_file import text_of_file
 from laconic.can.rig.link import Clock
 from laconic.errors import BadInput, reason_of
 from laconic.robot.logs.blf_log import header_of
-from laconic.robot.logs.can_frames import LoggedFrame, read_frames
+from laconic.robot.logs.can_frames import LoggedFrame, needs_of, read_frames
 
 
 class Heard(Protocol):
@@ -81,6 +81,7 @@ def read_by_someone(path: Path) -> Iterator[None]:
 
 def open_log(path: Path) -> can.io.generic.MessageWriter:
     """A python-can log writer for this name."""
+    needs_of(path)
     try:
         with writable(path), read_by_someone(path):
             make_folder(path.parent)

@@ -14,6 +14,7 @@ from laconic.can.rig.client import NodeClient
 from laconic.can.rig.codes import read_key
 from laconic.can.rig.wire import ID_BASE, ID_STRIDE
 from laconic.errors import BadInput
+from laconic.pictures.views.recorded import Recorded
 from laconic.scene import Scene
 
 LARGEST_BASE = 0x7E0
@@ -45,6 +46,14 @@ class Options:
     junit: Path | None
     json_wanted: bool
     bag: Path | None = None
+    storage: str | None = None
+    foxglove: Path | None = None
+    rerun: Path | None = None
+
+    @property
+    def recorded(self) -> Recorded:
+        """Where the run is written or shown besides its log."""
+        return Recorded(self.bag, self.storage, self.foxglove, self.rerun)
 
 
 def read_id_base(given: str | None, scene: Scene | None) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from laconic.can.rig.wire import wire
-from laconic.core import Field
+from laconic.core import Core, Field
 from laconic.core.plant import Plant
 
 Parameter = tuple[str, int, float | int]  # field (name in the value table), item, value
@@ -18,9 +18,15 @@ DRIVE = "vehicle.drive"  # has numbers of every motor, but only the friction ste
 
 def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
     """All parameters of this plant; zeros are left out where the node does not require the field."""
-    vehicle, core = plant.c.vehicle, plant.core
+    yield from vehicle_parameters(plant.core, plant.c.vehicle, start, with_drive=plant.has_friction)
+    yield "METHOD", 0, method_number(plant.core, plant.c.integrator.method)
+    yield "STEP", 0, plant.step_s
+
+
+def vehicle_parameters(core: Core, vehicle: Any, start: Any, *, with_drive: bool = False) -> Iterator[Parameter]:
+    """Those of a laconic_vehicle and a laconic_start."""
     has_payload = any(value for field in core.fields_of("vehicle.payload") for value in field.values(vehicle))
-    left_out = ("vehicle.motor",) if plant.has_friction else ("vehicle.motor", DRIVE)
+    left_out = ("vehicle.motor",) if with_drive else ("vehicle.motor", DRIVE)
     for field in core.fields:
         root = field.root
         if root not in ("vehicle", "initial") or field.table in left_out:
@@ -30,8 +36,6 @@ def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
         for item, value in enumerate(values, start=int(field.items > 0)):
             if value != 0 or required:
                 yield field.identifier, item, 1 - int(value) if field.kind == "ABSENCE" else value
-    yield "METHOD", 0, method_number(core, plant.c.integrator.method)
-    yield "STEP", 0, plant.step_s
 
 
 def in_use(field: Field, vehicle: Any) -> int | None:

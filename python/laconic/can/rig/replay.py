@@ -11,6 +11,7 @@ import numpy as np
 
 from laconic.can.rig.buses import next_channel
 from laconic.can.rig.client import NodeClient
+from laconic.can.rig.hinged import HINGED_FRAMES, HingedTwin, NodeInputs, signals_of_page
 from laconic.can.rig.judge import link_verdict, signal_verdicts
 from laconic.can.rig.link import Link
 from laconic.can.rig.logs import was_closed
@@ -18,10 +19,13 @@ from laconic.can.rig.scaled import Comparison
 from laconic.can.rig.session import Effect, Follower
 from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.can.rig.wire import wire
+from laconic.core.articulated import ArticulatedPlant
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
 from laconic.robot.logs.can_frames import LoggedFrame, read_frames
 from laconic.scene import Scene
+
+COMPARED = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", *HINGED_FRAMES)
 
 
 class LogPlayer:
@@ -29,7 +33,9 @@ class LogPlayer:
 
     def __init__(self, scene: Scene, id_base: int, link: Link):
         self.scene, self.id_base, self.link = scene, id_base, link
-        self.plant: Plant = scene.plant(scene.core())
+        hinged = HingedTwin(scene) if scene.has_hinges else None
+        self.plant: Plant | ArticulatedPlant = hinged.plant if hinged else scene.plant(scene.core())
+        self.inputs = NodeInputs(hinged) if hinged else None
         self.row = np.zeros(self.plant.core.input_length, self.plant.core.dtype)
         self.comparison = Comparison(scene.wheel_count)
         self.wrong_commands = 0
@@ -49,7 +55,7 @@ class LogPlayer:
             received = self.link.take(message)
             if received is not None and frame.name == "CHALLENGE":
                 self._follower.challenge(message.data)
-            if received is not None and self.running and frame.name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
+            if received is not None and self.running and frame.name in COMPARED:
                 self.comparison.take(*received, self.plant)
             return
         effect = self._follower.effect_of(frame, bytearray(message.data))
@@ -71,8 +77,21 @@ class LogPlayer:
                 self.running = False
         elif name == "VOLTAGE" and self.running:
             self._voltages(raw)
+        elif name == "STEERING" and self.running and self.inputs:
+            self.inputs.set_page(raw["page"], [raw[signal.name] for signal in signals_of_page(raw["page"])])
+            if raw["sync"]:
+                self._step(1)
         elif name == "SYNC" and self.running:
-            self.plant.run(self.plant.core.input(self.row), raw["step_count"])
+            self._step(raw["step_count"])
+
+    def _step(self, steps: int) -> None:
+        if isinstance(self.plant, ArticulatedPlant):
+            assert self.inputs is not None
+            rows = self.inputs.stepped()
+            self.plant.follow(rows[None])
+            self.plant.run(rows[1], steps - 1)
+        else:
+            self.plant.run(self.plant.core.input(self.row), steps)
 
     def _voltages(self, raw: dict[str, int]) -> None:
         start, dtype = self.plant.core.input_fields["voltage_V"][0], self.plant.core.dtype.type
@@ -81,8 +100,10 @@ class LogPlayer:
             wheel = 3 * raw["group"] + k
             if wheel < self.scene.wheel_count:
                 self.row[start + wheel] = dtype(raw[f"voltage_{k + 1}"]) / per_unit
+        if self.inputs:
+            self.inputs.set_base(self.row)
         if raw["sync"]:
-            self.plant.run(self.plant.core.input(self.row), 1)
+            self._step(1)
 
 
 def frames_of_node(path: Path, frames: Sequence[LoggedFrame], id_base: int, channel: str | None) -> list[LoggedFrame]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from laconic.base.progress import progress_bar
-from laconic.can.rig.bagged import bagged
+from laconic.can.rig.bagged import viewed
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import Interrupted
 from laconic.can.rig.estimated import is_estimated, read_estimate
@@ -31,7 +31,7 @@ def run(scene: Scene, options: Options) -> Judgement:
     lost = Lost()
     with (Interruption() as signals, node_for(options, scene.run.real, base) as node,
           logged(node.link, options.logs, lost),
-          bagged(node.link, scene, base, options.mode, options.bag), shown(node, scene, options) as moved):
+          viewed(node.link, scene, base, options.mode, options.recorded), shown(node, scene, options) as moved):
         node.link.may_go_on = signals.check  # between frames, so that no frame and no log entry is cut in two
         trial, notes, is_over = trial_of(node, scene, options, limits), [], False
         estimate: dict[str, float] = {}

@@ -12,12 +12,23 @@ import numpy as np
 
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import NodeSilent
+from laconic.can.rig.hinged import (
+    HINGED_ANSWERS,
+    HINGED_FRAMES,
+    HingedTwin,
+    Steering,
+    check_hinged_frames,
+    count_of_hinged_frames,
+    load_hinged,
+    values_with_hinges,
+)
 from laconic.can.rig.lockstep import load_scene
 from laconic.can.rig.sensed import (
     SENSED_FRAMES,
     Twin,
     check_frames,
     frames_of_sensors,
+    moving,
     part_of,
     period_of,
     plant_of,
@@ -26,6 +37,7 @@ from laconic.can.rig.sensed import (
     wrap_of,
 )
 from laconic.can.rig.wire import Frame, wire
+from laconic.core.articulated import ArticulatedPlant
 from laconic.errors import BadInput, nearest_of
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
@@ -33,8 +45,12 @@ from laconic.scene.inputs import InputsOnGrid
 DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
 SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "COUNTERS": "send_counters",
               "STATE_FD": "send_state_fd", "WHEEL_ANGLE": "send_wheel_angle", "IMU": "send_imu",
-              "ENCODER": "send_encoder", "ERROR_ESTIMATE": "send_error_estimate"}
-ANSWERS = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", *SENSED_FRAMES)
+              "ENCODER": "send_encoder", "ERROR_ESTIMATE": "send_error_estimate", "VELOCITY": "send_velocity",
+              "HINGE_ANGLE": "send_hinge_angle", "HINGE_RATE": "send_hinge_rate"}
+ANSWERS = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", *SENSED_FRAMES, *HINGED_FRAMES)
+OF_HINGES = ("hinge_voltage_V", "steering_rate_rad_per_s", "steering_angle_rad", "steering_twist",
+             "steering_curvature_per_m")
+"""Inputs of hinges that STEERING carries, itself or as the rates and the twist that follow from them."""
 ALWAYS_SENT = ("HEARTBEAT",)
 
 
@@ -50,13 +66,14 @@ def wanted_frames(scene: Scene) -> tuple[str, ...]:
             known = ", ".join((*SELECT_BIT, *ALWAYS_SENT))
             raise BadInput(f"{scene.path}: rig.frames: there is no frame {name}; known are {known}")
     check_frames(scene, scene.rig.frames)
-    return scene.rig.frames or DEFAULT_FRAMES
+    check_hinged_frames(scene, scene.rig.frames)
+    return scene.rig.frames or (HINGED_ANSWERS if scene.has_hinges else DEFAULT_FRAMES)
 
 
 def check_voltages_only(scene: Scene) -> None:
-    """BadInput for a scene with other inputs: scaled frames contain voltages only."""
+    """BadInput for a scene with other inputs: scaled frames contain voltages, and commands of hinges, only."""
     for each in scene.inputs:
-        if not each.signal.startswith("voltage_V"):
+        if not each.signal.startswith(("voltage_V", *OF_HINGES)):
             raise BadInput(f"{scene.path}: {each.location}.signal: {each.signal} has no scaled frame; use --same-bits, "
                            "which sends every input")
 
@@ -66,7 +83,8 @@ def read_tolerances(given: Sequence[str], scene: Scene) -> dict[str, float]:
     signals = ["nu_1", "nu_2", "nu_3", "x", "y", "heading"]
     signals += [f"{stem}_{wheel}" for stem in ("wheel_speed", "wheel_angle", "count", "index_count")
                 for wheel in range(1, scene.wheel_count + 1)]
-    signals += ["acceleration_x", "acceleration_y", "yaw_rate"]
+    signals += ["acceleration_x", "acceleration_y", "yaw_rate", "ahead", "left"]
+    signals += [f"hinge_{what}_{hinge}" for what in ("angle", "rate") for hinge in range(1, len(scene.hinges) + 1)]
     found = {}
     for text in given:
         name, equals, value = text.partition("=")
@@ -99,6 +117,39 @@ class Held:
         if tick < self._inputs.steps and (tick in self._changes or not self._inputs.is_held or not self._values):
             self._values = self._inputs.held_at(tick)
         return self._values
+
+    overranges = 0
+
+    def send(self, voltages: Voltages, tick: int, *, sync: bool = True) -> np.ndarray:
+        """Voltages and, with `sync`, the order to take one step; the row of input numbers that the node uses."""
+        return voltages.send(self.at(tick), sync=sync)
+
+
+class Hinged:
+    """The commands of a scene with hinges, one step after the other; it loads the scene into the node."""
+
+    def __init__(self, node: NodeClient, scene: Scene, steps: int):
+        self.twin = HingedTwin(scene)
+        load_hinged(node, self.twin)
+        self._steering = Steering(node, self.twin)
+        self._rows = self.twin.steps(steps, moves=False)
+        self._tick, self._wanted = -1, np.array([self.twin.first, self.twin.first])
+
+    @property
+    def overranges(self) -> int:
+        """Frames with a command beyond its range."""
+        return self._steering.overranges
+
+    def send(self, voltages: Voltages, tick: int, *, sync: bool = True) -> np.ndarray:
+        """Voltages, commands of hinges and, with `sync`, the order to take one step. Inputs of the node at start and
+        end of the step that takes them. Ticks come in order; after the scene's end its last commands stay."""
+        while self._tick < tick:
+            self._tick, self._wanted = self._tick + 1, next(self._rows, self._wanted)
+        wanted = self._wanted
+        volts = {f"voltage_V[{wheel + 1}]": float(wanted[0, self.twin.vehicle.slot(f"voltage_V[{wheel + 1}]")])
+                 for wheel in range(self.twin.vehicle.wheel_count)}
+        base = voltages.send(volts, sync=sync and not self._steering.pages)
+        return self._steering.send(wanted, base, sync=sync)
 
 
 class Voltages:
@@ -134,9 +185,12 @@ class Voltages:
 
 def expected_raw(twin: Twin, frame: Frame, group: int = 0) -> dict[str, float]:
     """The twin's values of a frame, in units of the raw values, before rounding."""
+    values: Mapping[str, float]
+    if isinstance(twin, ArticulatedPlant):
+        values = values_with_hinges(twin, frame, group)
+        return {name: value / frame.fields[name].scale for name, value in values.items()}
     plant = plant_of(twin)
     pose = plant.pose
-    values: Mapping[str, float]
     if frame.name in SENSED_FRAMES:
         values = values_of_frame(twin, frame, group)
     elif frame.name == "NU":
@@ -181,7 +235,7 @@ class Comparison:
 
     def take(self, frame: Frame, data: bytes, twin: Twin) -> None:
         """One answer and the twin at the same step."""
-        raw, plant = frame.unpack(data), plant_of(twin)
+        raw, plant = frame.unpack(data), moving(twin)
         group = part_of(frame, raw)
         self.overranges += raw.get("overrange", 0)
         for name, value in expected_raw(twin, frame, group).items():
@@ -209,13 +263,15 @@ class Comparison:
 class ScaledRun:
     """A lockstep run with scaled frames, up to its end, early or not."""
 
-    exchanges: list[tuple[np.ndarray, list[tuple[Frame, bytes]]]] = field(default_factory=list)  # inputs, answers
+    exchanges: list[tuple[np.ndarray, list[tuple[Frame, bytes]]]] = field(default_factory=list)
+    """Inputs (with hinges those at the start and the end of the step) and answers."""
     latencies_s: list[float] = field(default_factory=list)
     seconds: float = 0.0
     frames_out: int = 0
     frames_in: int = 0
     voltage_overranges: int = 0
     twin: Twin = field(init=False)  # set when the scene is loaded; `comparison` steps it
+    wheel_count: int = 0
 
     @property
     def steps(self) -> int:
@@ -225,10 +281,13 @@ class ScaledRun:
     @cached_property
     def comparison(self) -> Comparison:
         """All answers paired with the twin's values."""
-        plant = plant_of(self.twin)
-        comparison = Comparison(plant.wheel_count)
+        twin = self.twin
+        comparison = Comparison(self.wheel_count)
         for row, answer in self.exchanges:
-            self.twin.run(plant.core.input(row))
+            if isinstance(twin, ArticulatedPlant):
+                twin.follow(row[None])
+            else:
+                twin.run(plant_of(twin).core.input(row))
             for frame, data in answer:
                 comparison.take(frame, data, self.twin)
         return comparison
@@ -237,7 +296,8 @@ class ScaledRun:
 def frames_per_answer(scene: Scene, frames: tuple[str, ...]) -> int:
     """How many frames follow a SYNC."""
     wheel_frames = math.ceil(scene.wheel_count / 3) if "WHEEL_SPEED" in frames else 0
-    return wheel_frames + sum(name in ("NU", "POSE", "STATE_FD") for name in frames) + frames_of_sensors(scene, frames)
+    plain = sum(name in ("NU", "POSE", "STATE_FD") for name in frames)
+    return wheel_frames + plain + frames_of_sensors(scene, frames) + count_of_hinged_frames(scene, frames)
 
 
 def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
@@ -249,21 +309,30 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
     awaited = frames_per_answer(scene, frames)
     if not awaited:
         raise BadInput(f"{scene.path}: rig.frames: the node never answers a step with {', '.join(frames)}; add NU")
-    run = run or ScaledRun()
-    run.twin = twin_of(scene, load_scene(node, scene), frames)
+    run, wanted = run or ScaledRun(), steps or scene.steps()
+    run.wheel_count = scene.wheel_count
+    commands: Held | Hinged
+    if scene.has_hinges:
+        if wanted > scene.steps():
+            scene = scene.with_run(duration_s=wanted * scene.run.step_s)
+        commands = Hinged(node, scene, wanted)
+        run.twin = commands.twin.plant
+    else:
+        run.twin, commands = twin_of(scene, load_scene(node, scene), frames), Held(scene.inputs_on_grid())
     node.select(**select_bits(frames))
     node.start_lockstep()
-    held, voltages, link = Held(scene.inputs_on_grid()), Voltages(node, scene), node.link
+    voltages, link = Voltages(node, scene), node.link
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
     try:
-        for tick in range(steps or scene.steps()):
+        for tick in range(wanted):
             sent = time.perf_counter()
-            row = voltages.send(held.at(tick), sync=True)
+            row = commands.send(voltages, tick)
             run.exchanges.append((row, await_answers(node, awaited)))
             run.latencies_s.append(time.perf_counter() - sent)
             moved(1)
     finally:
-        run.seconds, run.voltage_overranges = time.perf_counter() - began, voltages.overranges
+        run.seconds = time.perf_counter() - began
+        run.voltage_overranges = voltages.overranges + commands.overranges
         run.frames_out, run.frames_in = link.frames_out - frames_out, link.frames_in - frames_in
     node.stop()
     return run

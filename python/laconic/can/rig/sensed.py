@@ -10,6 +10,7 @@ import numpy as np
 
 from laconic.can.rig.parameters import Parameter
 from laconic.can.rig.wire import Frame
+from laconic.core.articulated import ArticulatedPlant
 from laconic.core.encoders import signed
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors, values_of
@@ -22,8 +23,8 @@ RAW_OF_SENSORS = ("raw_imu", "raw_encoder")
 INDEX_TURNS = 2**16                             # of ENCODER.index_count
 WHOLE_COUNT = 2**32                             # where an encoder wraps without a setting
 
-Twin = Plant | Sensors
-"""What is stepped beside a node: a plant, or the sensors that watch it."""
+Twin = Plant | Sensors | ArticulatedPlant
+"""What is stepped beside a node: a plant, the sensors that watch it, or a vehicle with hinges."""
 
 
 def has_sensors(scene: Scene) -> bool:
@@ -48,8 +49,15 @@ def twin_of(scene: Scene, plant: Plant, frames: Iterable[str] = ()) -> Twin:
 
 
 def plant_of(twin: Twin) -> Plant:
-    """The plant itself."""
+    """The plant itself, of a vehicle without hinges."""
+    if isinstance(twin, ArticulatedPlant):
+        raise TypeError("a vehicle with hinges is stepped by itself")
     return twin.plant if isinstance(twin, Sensors) else twin
+
+
+def moving(twin: Twin) -> Plant | ArticulatedPlant:
+    """What takes the steps."""
+    return twin if isinstance(twin, ArticulatedPlant) else plant_of(twin)
 
 
 def check_frames(scene: Scene, frames: Iterable[str]) -> None:
@@ -99,7 +107,7 @@ def wrap_of(twin: Twin) -> int:
 def period_of(frame: Frame, signal: str, wrap: int) -> float | None:
     """Of a signal that begins again, such as an angle, after how many steps of its raw value; None of others. `wrap`:
     where encoders begin again."""
-    if signal == "heading" or signal.startswith("wheel_angle"):
+    if signal == "heading" or signal.startswith(("wheel_angle", "hinge_angle")):
         return 2.0 * math.pi / frame.fields[signal].scale
     if signal == "index_count":
         return INDEX_TURNS

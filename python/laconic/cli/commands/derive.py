@@ -14,16 +14,17 @@ from laconic.cli.options import OutputFile, SceneName, only_one
 from laconic.errors import BadInput, ResultFails
 
 if TYPE_CHECKING:
+    from laconic.scene import Scene
     from laconic.tools.derive.scene_system import VehicleNumbers
 
 EXAMPLES = ("caster", "carriage", "differential-drive", "trailer")
 ENDINGS = {"": (".txt", ".md"), "latex": (".tex",), "c": (".c", ".h"), "json": (".json",)}
 ALL_ENDINGS = tuple(ending for endings in ENDINGS.values() for ending in endings)
-AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
+AGREEMENT = 1e-12  # between the forms, and with the core, relative, at random numbers
 
 
 @click.command("derive")
-@click.argument("scene", type=SceneName(), required=False)
+@click.argument("scene", type=SceneName(hinges=True), required=False)
 @click.option("--example", type=click.Choice(EXAMPLES), help="A worked system in symbols, instead of a scene.")
 @click.option("--latex", is_flag=True, help="Print LaTeX.")
 @click.option("--c", "in_c", is_flag=True, help="Print a C function of the scene's own numbers.")
@@ -32,8 +33,8 @@ AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
 def command(scene: str | None, example: str | None, latex: bool, in_c: bool, out: Path | None, as_json: bool) -> None:
     """Derives the equations of motion by the laconic equations (2.4).
 
-    The result is checked against (2.3) and Maggi's equations (1.2) at random numbers, and a scene's also against the
-    C core's derivative.
+    Vehicles with hinges that a command turns have (2.3). The result is checked against the other forms and Maggi's
+    equations (1.2) at random numbers, and a scene's also against the C core's derivative.
     """
     given = [name for name in (scene, example) if name is not None]
     if len(given) != 1:
@@ -71,7 +72,7 @@ def _of_example(name: str, form: str) -> tuple[str, dict[str, float]]:
 
 def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.scene import read_scene
-    from laconic.scene.ground import check_ideal_ground
+    from laconic.scene.ground import check_ideal_ground, check_rolling
     from laconic.tools.analyse.from_core import subject_of
     from laconic.tools.derive import printing
     from laconic.tools.derive.checks import forms_difference
@@ -79,6 +80,9 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.tools.derive.scene_system import carriage_of, derive
 
     scene = read_scene(given)
+    if scene.has_hinges:
+        check_rolling(scene, "derive")
+        return _of_tree(scene, form)
     check_ideal_ground(scene, "derive")
     subject = subject_of(scene)
     numbers = subject.numbers()
@@ -90,6 +94,20 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     checks = {"(2.3), (2.4) and (1.2) differ at most by": forms_difference(carriage_of(numbers))}
     checks["derived equations and the C core's derivative differ at most by"] = core_difference(subject, system)
     return text, checks
+
+
+def _of_tree(scene: Scene, form: str) -> tuple[str, dict[str, float]]:
+    from laconic.core import load
+    from laconic.tools.derive import tree_printing
+    from laconic.tools.derive.scene_check import tree_core_difference, tree_forms_difference
+    from laconic.tools.derive.tree_system import derive_tree, tree_numbers
+
+    vehicle = scene.articulated_vehicle(load("double"))
+    tree = derive_tree(tree_numbers(scene, vehicle))
+    writers = {"latex": tree_printing.tree_latex, "c": tree_printing.tree_c, "": tree_printing.tree_text}
+    checks = {f"{tree.form} and Maggi's (1.2) differ at most by": tree_forms_difference(tree),
+              "derived equations and the C core's derivative differ at most by": tree_core_difference(tree, vehicle)}
+    return writers[form](tree), checks
 
 
 def _numbers_text(numbers: VehicleNumbers) -> str:

@@ -10,7 +10,17 @@ import click
 from laconic.base.outputs import write_text
 from laconic.can.play.fault_kinds import KINDS as FAULTS
 from laconic.can.rig.choices import KINDS, LOGS, ON_BUS
-from laconic.cli.options import InputPath, OutputBag, OutputFile, SceneName, check_step, goes_with, json_flag, one_of
+from laconic.cli.options import (
+    InputPath,
+    OutputFile,
+    SceneName,
+    check_step,
+    check_storage,
+    goes_with,
+    json_flag,
+    one_of,
+    recorded_options,
+)
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.scene import METHODS, read_scene
@@ -21,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @click.command("play")
-@click.argument("scene_name", type=SceneName(), metavar="SCENE")
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="SCENE")
 @click.option("--interface", help="python-can's name of the controller's bus: socketcan, slcan, pcan, faulty …")
 @click.option("--channel", help="Channel of the interface: can0, /dev/ttyACM0, socket://127.0.0.1:PORT …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
@@ -49,9 +59,8 @@ if TYPE_CHECKING:
 @one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")
-@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
-@click.option("--bag", type=OutputBag(), metavar="BAG",
-              help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")
+@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc, .mf4.")
+@recorded_options
 @click.option("--live", is_flag=True, help="Show the frames while it plays.")
 @click.option("--eds", type=OutputFile(".eds"), metavar="FILE",
               help="Write the EDS file of the CANopen drives, for the controller's configuration, and play nothing.")
@@ -71,6 +80,7 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     from laconic.can.play.session import play
 
     check_step(step_s)
+    check_storage(given["bag"], given["storage"])
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")

@@ -11,7 +11,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, json_flag, one_of
 from laconic.errors import BadInput, ResultFails
-from laconic.ros2 import GID_BYTES, MIDDLEWARES, USUAL_DISTRIBUTION
+from laconic.ros2 import GID_BYTES, MIDDLEWARES, OF_DDS, USUAL_DISTRIBUTION
 from laconic.scene import METHODS, read_scene
 
 if TYPE_CHECKING:
@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 
 
 @click.command("ros2")
-@click.argument("scene_name", type=SceneName(), metavar="SCENE")
+@click.argument("scene_name", type=SceneName(hinges=True), metavar="SCENE")
 @one_of("--distro", tuple(GID_BYTES), "Distribution of the peers, instead of ROS_DISTRO or jazzy")
-@one_of("--rmw", tuple(MIDDLEWARES), "Middleware of the peers, instead of RMW_IMPLEMENTATION or cyclonedds; fastrtps "
-        "leaves out services")
+@one_of("--rmw", tuple(MIDDLEWARES), "Middleware of the peers, instead of RMW_IMPLEMENTATION or "
+        "both of DDS; zenoh is experimental")
 @click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
 @click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
+@click.option("--router", default="tcp/localhost:7447", metavar="ENDPOINT", show_default=True,
+              help="With --rmw zenoh: where to connect.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
 @click.option("--robots", type=int, default=1, help="So many robots, in namespaces robot1, robot2 …")
 @click.option("--spacing", "spacing_m", type=float, default=1.0, metavar="METRES", help="Between them at the start.")
@@ -62,7 +64,7 @@ def command(scene_name: str, distro: str | None, rmw: str | None, domain: int | 
     check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s)
     options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent,
-                          has_services=middleware_of(rmw) != "fastrtps", **given)
+                          services_for=middlewares_of(rmw), **given)
 
     def say(text: str) -> None:
         click.echo(text, err=json_wanted)
@@ -91,10 +93,11 @@ def distribution_of(given: str | None) -> str:
     return given or (of_environment if of_environment in GID_BYTES else USUAL_DISTRIBUTION)
 
 
-def middleware_of(given: str | None) -> str:
-    """The middleware of the command line, or that of the environment where it is known."""
+def middlewares_of(given: str | None) -> tuple[str, ...]:
+    """The middleware of the command line, or that of the environment where it is known; else both of DDS."""
     of_environment = os.environ.get("RMW_IMPLEMENTATION", "")
-    return given or next((name for name, package in MIDDLEWARES.items() if package == of_environment), "cyclonedds")
+    known = [name for name, package in MIDDLEWARES.items() if package == of_environment]
+    return (given,) if given else tuple(known or OF_DDS)
 
 
 def domain_of(given: int | None) -> int:
@@ -113,11 +116,12 @@ def introduction(session: Session) -> str:
     options, robots = session.options, session.robots
     topic = robots[0].command_topic.removeprefix("rt")
     kind = {None: "Twist or TwistStamped", True: "TwistStamped", False: "Twist"}[options.is_stamped]
+    drives = " and AckermannDriveStamped on ackermann_cmd and drive" if session.base.is_car else ""
     more = f" (and those of {len(robots) - 1} more)" if robots[1:] else ""
     stamps = f"simulated time at {options.speed:g} times" if options.is_sim_time else "the system's time"
     torques = "" if session.base.loop.signal == "voltage_V" else "; has no motors, so torques drive its wheels"
     return (f"{session.scene.name}: {robots[0].node.full_name} in domain {options.domain}, {options.rate_Hz:g} Hz, "
-            f"{stamps}; hears {kind} on {topic}{more}{torques}\n"
+            f"{stamps}; hears {kind} on {topic}{drives}{more}{torques}\n"
             f"drive it: ros2 topic pub -r 10 {topic} geometry_msgs/msg/{kind.partition(' ')[0]} ... ; stop with Ctrl-C")
 
 

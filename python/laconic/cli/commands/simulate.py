@@ -14,24 +14,27 @@ import numpy as np
 from laconic.base.outputs import is_stdout, opened
 from laconic.cli.options import (
     PICTURES,
-    OutputBag,
     OutputFile,
     SceneName,
     all_methods,
     belongs_to,
     check_step,
+    check_storage,
     json_flag,
     one_of,
+    recorded_options,
 )
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.core.estimate import Errors, ErrorSizes
 from laconic.errors import BadInput, Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
+from laconic.pictures.views.recorded import Recorded, signals_of, write_run
 from laconic.scene import Scene, read_scene
 from laconic.scene.axle_lines import nearly_one_line
 from laconic.scene.standing import Standing, standing_of
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
+from laconic.simulation.articulated import HingeErrors, HingeErrorSizes
 from laconic.simulation.csv_text import csv_text
 from laconic.simulation.run import is_watched
 
@@ -51,8 +54,7 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
 @click.option("--film", type=OutputFile(".svg"), metavar="F.svg",
               help="Draw a moving picture: the robot on its path, which a browser plays.")
-@click.option("--bag", type=OutputBag(), metavar="BAG",
-              help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")
+@recorded_options
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
 @click.option("--errors", "errors_wanted", is_flag=True,
@@ -61,27 +63,32 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Enclose the exact solution and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, film: Path | None, bag: Path | None, inputs_wanted: bool, errors_wanted: bool,
-            enclose_wanted: bool, json_wanted: bool) -> None:
+            plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool,
+            enclose_wanted: bool, json_wanted: bool, **views: Any) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
     coefficient or the height of the centre of mass in the scene, the ground is watched. The first wheel that would slip
     or lift is named on stderr. If a step is refused, everything before it is written, and the exit status is 1. The
-    estimated error of the steps and of rounding is printed at the end. --enclose proves intervals that contain the
+    estimated error of the steps and of rounding is printed at the end; with hinges, --errors asks for it, at four times
+    the cost. --enclose proves intervals that contain the
     exact motion of the file's numbers. See docs/accuracy.md.
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
+    check_storage(views["bag"], views["storage"])
+    recorded = Recorded(**views)
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
-        not_with_hinges(given, errors_wanted, enclose_wanted, bag)
+        not_with_hinges(given, enclose_wanted)
+    if given.slips_on_hinges and errors_wanted:
+        raise BadInput(f"{given.path}: --errors does not take hinges on ground with friction yet; leave it out")
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
                              *(drawn_with_hinges(given) if plot or film else ()),
                              *(signals_to_enclose(given) if enclose_wanted else ()),
-                             *(signals_of_bag(given) if bag else ())))
-    run = as_far_as_it_goes(given, tuple(signals))
+                             *signals_of(recorded, given)))
+    run = as_far_as_it_goes(given, tuple(signals), estimated=errors_wanted or not given.has_hinges)
     enclosure = enclosed(run) if enclose_wanted else None
     if out:
         further = run.error_columns if errors_wanted else {}
@@ -91,14 +98,17 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         simulation_picture(run, plot)
     if film:
         write_film(run, film)
-    if bag:
-        write_bag(run, bag)
+    for line in write_run(run, recorded) if recorded else ():
+        warn(line)
+    files = (out, plot, film, *recorded.files)
     if json_wanted:
-        click.echo(json.dumps(summary(run, out, plot, film, bag) | (enclosure.json if enclosure else {}), indent=1))
+        click.echo(json.dumps(summary(run, *files) | (enclosure.json if enclosure else {}), indent=1))
     elif not (out and is_stdout(out)):
-        print_summary(run, out, plot, film, bag, lines=enclosure.lines if enclosure else ())
+        print_summary(run, *files, lines=enclosure.lines if enclosure else ())
     for each in run.limited:
         warn(f"{given.path}: {each.in_words(given.run.step_s)}")
+    for fold in run.folded:
+        warn(f"{given.path}: {fold.in_words()}")
     if run.least_margin and run.least_margin[0] < 0.0:
         warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
              f"slip, by {-run.least_margin[0]:.3g} N")
@@ -109,14 +119,13 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
     if run.refused:
-        raise ResultFails(f"{run.refused}{kept_in(out, plot, film, bag)}")
+        raise ResultFails(f"{run.refused}{kept_in(*files)}")
 
 
-def not_with_hinges(scene: Scene, errors_wanted: bool, enclose_wanted: bool, bag: Path | None) -> None:
+def not_with_hinges(scene: Scene, enclose_wanted: bool) -> None:
     """BadInput for what a run of a vehicle with hinges does not have yet."""
-    for option, is_wanted in (("--errors", errors_wanted), ("--enclose", enclose_wanted), ("--bag", bag is not None)):
-        if is_wanted:
-            raise BadInput(f"{scene.path}: {option} does not take vehicles with hinges yet; leave it out")
+    if enclose_wanted:
+        raise BadInput(f"{scene.path}: --enclose does not take vehicles with hinges yet; use --errors for an estimate")
 
 
 def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
@@ -130,29 +139,12 @@ def drawn_with_hinges(scene: Scene) -> tuple[str, ...]:
     return tuple(signal for name in DRAWN for signal in known[name])
 
 
-def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
+def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...], estimated: bool) -> Trajectory:
     """The run, to its end or to the step that is refused."""
     try:
-        return simulate(scene, signals, progress=True, estimated=not scene.has_hinges)
+        return simulate(scene, signals, progress=True, estimated=estimated)
     except RunRefused as cut_short:
         return cut_short.run
-
-
-def signals_of_bag(scene: Scene) -> tuple[str, ...]:
-    """The signals that the topics of a bag are made of."""
-    from laconic.robot.bags.run_topics import needed_signals
-
-    return needed_signals(scene)
-
-
-def write_bag(run: Trajectory, path: Path) -> None:
-    """The run as topics."""
-    from laconic.robot.bags.run_topics import open_bag, write_run
-
-    with open_bag(path) as bag:
-        topics = write_run(run, bag)
-    if not topics.has_odometry:
-        warn(f"--bag {path}: has no /odom and no /tf, as the wheels do not determine the motion")
 
 
 @dataclass(frozen=True)
@@ -222,7 +214,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else margin_json(run),
-        "limited": [asdict(each) for each in run.limited],
+        "limited": [asdict(each) for each in run.limited], "folded": [asdict(each) for each in run.folded],
         "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}
@@ -258,10 +250,14 @@ def words_of_slip(run: Trajectory) -> list[str]:
     return told
 
 
-def words_of_errors(errors: Errors | None, wheel_count: int) -> list[str]:
+def words_of_errors(errors: Errors | HingeErrors | None, wheel_count: int) -> list[str]:
     """How far the end is off, and the worst on the way."""
     if errors is None:
         return []
+    if isinstance(errors, HingeErrors):
+        lines = [f"estimated error: {hinge_sizes_text(errors.now)}",
+                 f"  largest of the rows: {hinge_sizes_text(errors.largest)}"]
+        return lines + ([f"  steps that no finer run could take: {errors.unknown}"] if errors.unknown else [])
     lines = [f"estimated error: {sizes_text(errors.now, wheel_count)}",
              f"  largest of the run: {sizes_text(errors.largest, wheel_count)}"]
     if errors.unknown:
@@ -274,6 +270,13 @@ def sizes_text(sizes: ErrorSizes, wheel_count: int) -> str:
     angles = f", wheel angles {sizes.wheel_angle_rad:.1e} rad" if wheel_count else ""
     return (f"nu {sizes.nu_rad_per_s:.1e} rad/s, place {sizes.place_m:.1e} m, heading {sizes.heading_rad:.1e} rad"
             f"{angles}")
+
+
+def hinge_sizes_text(sizes: HingeErrorSizes) -> str:
+    """The sizes with their units, as in the names of the columns."""
+    return (f"velocity {sizes.velocity_m_per_s:.1e} m/s, yaw rate {sizes.yaw_rate_rad_per_s:.1e} rad/s, hinge rates "
+            f"{sizes.hinge_rate_rad_per_s:.1e} rad/s, place {sizes.place_m:.1e} m, heading {sizes.heading_rad:.1e} "
+            f"rad, hinge angles {sizes.hinge_angle_rad:.1e} rad, wheel angles {sizes.wheel_angle_rad:.1e} rad")
 
 
 def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = ()) -> None:

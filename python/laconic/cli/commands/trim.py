@@ -14,7 +14,7 @@ from laconic.tools.trim import trimmed
 
 
 @click.command("trim")
-@click.argument("scene", type=SceneName())
+@click.argument("scene", type=SceneName(hinges=True))
 @click.option("--real", type=click.Choice(REALS), help="Scalar type; the scene's own where none is given.")
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", default=Path(), show_default=True,
               help="Folder for the files.")

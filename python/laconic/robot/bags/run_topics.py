@@ -7,12 +7,14 @@ import math
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
 from laconic.base.outputs import claims, make_folder
+from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput, reason_of
 from laconic.robot.bags.messages import store
 from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
@@ -44,6 +46,8 @@ def definition_of(kind: str) -> tuple[str, str]:
 class BagWriter(Protocol):
     """An open recording."""
 
+    path: Path
+
     def write(self, topic: str, kind: str, stamp_ns: int, message: Any) -> None:
         """A message of a topic, whose type is stated with its first one."""
         ...
@@ -61,13 +65,15 @@ def check_bag(option: str, path: Path) -> None:
 
 
 @contextmanager
-def open_bag(path: Path) -> Iterator[BagWriter]:
-    """A new recording by its name; it is completed whatever happens on the way."""
+def open_bag(path: Path, storage: str | None = None) -> Iterator[BagWriter]:
+    """A new recording by its name; it is completed whatever happens on the way. `storage` of a folder: sqlite3 (without
+    it) or mcap."""
     check_bag("--bag", path)
     claims().write(path)
     try:
         make_folder(path.parent if path.suffix.lower() == ".mcap" else path)
-        writer: BagWriter = McapBag(path) if path.suffix.lower() == ".mcap" else Rosbag2(path)
+        writer: BagWriter = McapBag(path) if path.suffix.lower() == ".mcap" else \
+            McapFolder(path) if storage == "mcap" else Rosbag2(path)
         try:
             yield writer
         finally:
@@ -87,6 +93,7 @@ class McapBag:
     def __init__(self, path: Path):
         from mcap.writer import CompressionType, Writer
 
+        self.path = path
         self._file = path.open("wb")
         self._writer = Writer(self._file, chunk_size=BYTES_OF_CHUNK, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="laconic")
@@ -111,28 +118,81 @@ class McapBag:
             self._file.close()
 
 
+@dataclass
+class Metadata:
+    """What metadata.yaml of a rosbag2 states."""
+
+    storage: str
+    file: str
+    topics: dict[str, str] = field(default_factory=dict)   # with their types
+    counts: dict[str, int] = field(default_factory=dict)
+    first_ns: int = 2**63 - 1
+    last_ns: int = 0
+
+    def take(self, topic: str, kind: str, stamp_ns: int) -> None:
+        """A message was written."""
+        self.topics.setdefault(topic, kind)
+        self.counts[topic] = self.counts.get(topic, 0) + 1
+        self.first_ns, self.last_ns = min(self.first_ns, stamp_ns), max(self.last_ns, stamp_ns)
+
+    def text(self) -> str:
+        """The file."""
+        total = sum(self.counts.values())
+        first = self.first_ns if total else 0
+        span = self.last_ns - first
+        head = ["rosbag2_bagfile_information:", "  version: 8", f"  storage_identifier: {self.storage}",
+                *_span("  ", first, span), f"  message_count: {total}", "  topics_with_message_count:"]
+        for topic, kind in self.topics.items():
+            head += ["    - topic_metadata:", f"        name: {topic}", f"        type: {kind}",
+                     "        serialization_format: cdr", "        offered_qos_profiles: []",
+                     f"        type_description_hash: {definition_of(kind)[1]}",
+                     f"      message_count: {self.counts[topic]}"]
+        name = self.file.replace('"', '\\"')
+        return "\n".join([
+            *head, '  compression_format: ""', '  compression_mode: ""', "  relative_file_paths:", f'    - "{name}"',
+            "  files:", f'    - path: "{name}"', *_span("      ", first, span), f"      message_count: {total}",
+            "  custom_data: ~", f"  ros_distro: {DISTRIBUTION}", ""])
+
+
+class McapFolder:
+    """A rosbag2 whose one file is an MCAP."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        self._metadata = Metadata("mcap", f"{path.resolve().name}_0.mcap")
+        self._bag = McapBag(path / self._metadata.file)
+
+    def write(self, topic: str, kind: str, stamp_ns: int, message: Any) -> None:
+        """A message of a topic."""
+        self._bag.write(topic, kind, stamp_ns, message)
+        self._metadata.take(topic, kind, stamp_ns)
+
+    def close(self) -> None:
+        """Writes metadata.yaml and closes the file."""
+        self._bag.close()
+        (self.path / "metadata.yaml").write_text(self._metadata.text(), encoding="utf-8")
+
+
 class Rosbag2:
     """A folder with one SQLite file and metadata.yaml."""
 
     def __init__(self, path: Path):
         self.path = path
-        self._name = f"{path.resolve().name}_0.db3"
-        self._base = sqlite3.connect(path / self._name)
+        self._metadata = Metadata("sqlite3", f"{path.resolve().name}_0.db3")
+        self._base = sqlite3.connect(path / self._metadata.file)
         self._base.executescript(TABLES)
         self._base.execute("INSERT INTO schema VALUES (4, ?)", (DISTRIBUTION,))
-        self._topics: dict[str, tuple[int, str]] = {}
-        self._counts: dict[str, int] = {}
-        self._first, self._last, self._pending = 2**63 - 1, 0, 0
+        self._keys: dict[str, int] = {}
+        self._pending = 0
         self._base.commit()
 
     def write(self, topic: str, kind: str, stamp_ns: int, message: Any) -> None:
         """A message of a topic."""
-        if topic not in self._topics:
+        if topic not in self._keys:
             self._add(topic, kind)
         self._base.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)",
-                           (self._topics[topic][0], stamp_ns, bytes(store().serialize_cdr(message, kind))))
-        self._counts[topic] += 1
-        self._first, self._last = min(self._first, stamp_ns), max(self._last, stamp_ns)
+                           (self._keys[topic], stamp_ns, bytes(store().serialize_cdr(message, kind))))
+        self._metadata.take(topic, kind, stamp_ns)
         self._pending += 1
         if self._pending >= COMMITTED_AT_ONCE:
             self._base.commit()
@@ -140,37 +200,21 @@ class Rosbag2:
 
     def _add(self, topic: str, kind: str) -> None:
         text, digest = definition_of(kind)
-        if kind not in {known for _, known in self._topics.values()}:
+        if kind not in self._metadata.topics.values():
             self._base.execute("INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition, "
                                "type_description_hash) VALUES (?, 'ros2msg', ?, ?)", (kind, text, digest))
         cursor = self._base.execute("INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, "
                                     "type_description_hash) VALUES (?, ?, 'cdr', '', ?)", (topic, kind, digest))
         assert cursor.lastrowid is not None
-        self._topics[topic], self._counts[topic] = (cursor.lastrowid, kind), 0
+        self._keys[topic] = cursor.lastrowid
 
     def close(self) -> None:
         """Writes metadata.yaml and closes the file."""
-        text = self._metadata()
+        text = self._metadata.text()
         self._base.execute("INSERT INTO metadata(metadata_version, metadata) VALUES (8, ?)", (text,))
         self._base.commit()
         self._base.close()
         (self.path / "metadata.yaml").write_text(text, encoding="utf-8")
-
-    def _metadata(self) -> str:
-        total = sum(self._counts.values())
-        first = self._first if total else 0
-        head = ["rosbag2_bagfile_information:", "  version: 8", "  storage_identifier: sqlite3",
-                *_span("  ", first, self._last - first), f"  message_count: {total}", "  topics_with_message_count:"]
-        for topic, (_, kind) in self._topics.items():
-            head += ["    - topic_metadata:", f"        name: {topic}", f"        type: {kind}",
-                     "        serialization_format: cdr", "        offered_qos_profiles: []",
-                     f"        type_description_hash: {definition_of(kind)[1]}",
-                     f"      message_count: {self._counts[topic]}"]
-        name = self._name.replace('"', '\\"')
-        return "\n".join([
-            *head, '  compression_format: ""', '  compression_mode: ""', "  relative_file_paths:", f'    - "{name}"',
-            "  files:", f'    - path: "{name}"', *_span("      ", first, self._last - first),
-            f"      message_count: {total}", "  custom_data: ~", f"  ros_distro: {DISTRIBUTION}", ""])
 
 
 def _span(indent: str, first_ns: int, length_ns: int) -> list[str]:
@@ -181,6 +225,7 @@ def _span(indent: str, first_ns: int, length_ns: int) -> list[str]:
 ODOM, BASE, MAP, IMU = (FRAMES[name] for name in ("odom", "base", "map", "imu"))
 ODOMETRY, TRANSFORMS = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 JOINTS, IMU_TYPE, NUMBERS = "sensor_msgs/msg/JointState", "sensor_msgs/msg/Imu", "std_msgs/msg/Float64MultiArray"
+HINGE_ANGLE, HINGE_RATE = "hinge_angle_rad", "hinge_rate_rad_per_s"
 UNKNOWN_VARIANCE = -1.0        # in the first place of a covariance: that quantity is not measured
 
 
@@ -189,10 +234,12 @@ def needed_signals(scene: Scene) -> tuple[str, ...]:
     from laconic.simulation.run import input_signals, sensor_signals
 
     names = ["x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "velocity_body_m_per_s[1]", "velocity_body_m_per_s[2]"]
+    names += [f"{name}[{hinge.name}]" for hinge in scene.hinges for name in (HINGE_ANGLE, HINGE_RATE)]
     for wheel in range(1, scene.wheel_count + 1):
         names += [f"wheel_angle_rad[{wheel}]", f"wheel_speed_rad_per_s[{wheel}]"]
     voltages = [each for each in input_signals(scene) if each.startswith("voltage_V")]
-    return (*names, *voltages, *(each for each in sensor_signals(scene) if each.startswith("imu_")))
+    shown = () if scene.has_hinges else sensor_signals(scene)
+    return (*names, *voltages, *(each for each in shown if each.startswith("imu_")))
 
 
 class RunTopics:
@@ -201,18 +248,21 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        self.joints = usual_joints(scene.wheel_count)
-        core = scene.core()
-        self._centre = centre_of_mass(core, core.vehicle(scene.vehicle))
-        self._rolling = _rolling(scene)
+        self.joints = [*usual_joints(scene.wheel_count), *(f"{hinge.name}_joint" for hinge in scene.hinges)]
+        core, carriage = scene.core(), carriage_of(scene)
+        self._centre = centre_of_mass(core, core.vehicle(carriage))
+        self._rolling = _rolling(scene, carriage)
+        self._on_carriage = [at for at, wheel in enumerate(scene.vehicle["wheel"]) if is_of_carriage(wheel)]
         self._angles: np.ndarray | None = None
         self._odom: np.ndarray | None = None
         self._before_s = 0.0
 
     @property
-    def has_odometry(self) -> bool:
-        """Whether the wheels determine the motion."""
-        return self._rolling is not None
+    def remarks(self) -> tuple[str, ...]:
+        """What the recording lacks."""
+        if self._rolling is not None:
+            return ()
+        return (f"--bag {self.bag.path}: has no /odom and no /tf, as the wheels do not determine the motion",)
 
     def take(self, time_s: float, signals: Mapping[str, float]) -> None:
         """One instant; what of the signals is not there leaves out its topic."""
@@ -225,10 +275,11 @@ class RunTopics:
         if angles is not None or speeds is not None:
             nothing = np.zeros(0)
             self.bag.write("/joint_states", JOINTS, stamp_ns, self.types[JOINTS](
-                self._header(stamp, ""), self.joints, nothing if angles is None else angles,
-                nothing if speeds is None else speeds, nothing))
+                self._header(stamp, ""), self.joints, nothing if angles is None else
+                np.append(angles, self._of_hinges(signals, HINGE_ANGLE)), nothing if speeds is None else
+                np.append(speeds, self._of_hinges(signals, HINGE_RATE)), nothing))
         if angles is not None and self._rolling is not None:
-            self._odometry(stamp_ns, stamp, time_s, angles, signals)
+            self._odometry(stamp_ns, stamp, time_s, angles[self._on_carriage], signals)
         rate = signals.get("imu_yaw_rate_rad_per_s", signals.get("yaw_rate_rad_per_s"))
         if rate is not None:
             self._imu(stamp_ns, stamp, rate, signals)
@@ -240,6 +291,9 @@ class RunTopics:
     def _of_wheels(self, signals: Mapping[str, float], name: str) -> np.ndarray | None:
         values = [signals.get(f"{name}[{number}]") for number in range(1, self.scene.wheel_count + 1)]
         return np.array(values, float) if values and None not in values else None
+
+    def _of_hinges(self, signals: Mapping[str, float], name: str) -> list[float]:
+        return [signals.get(f"{name}[{hinge.name}]", math.nan) for hinge in self.scene.hinges]
 
     def _header(self, stamp: Any, frame: str) -> Any:
         return self.types["std_msgs/msg/Header"](stamp, frame)
@@ -302,25 +356,23 @@ class RunTopics:
             vector(float(ahead or 0.0), float(left or 0.0), 0.0), unknown if ahead is None else known))
 
 
-def _rolling(scene: Scene) -> Rolling | None:
-    """None where the wheels do not determine the motion: then there is no odometry."""
-    if not scene.vehicle["wheel"]:
+def carriage_of(scene: Scene) -> dict[str, Any]:
+    """The vehicle, of one with hinges body 0 alone with its own wheels."""
+    wheels = [{key: value for key, value in wheel.items() if key != "body"} for wheel in scene.vehicle["wheel"]
+              if is_of_carriage(wheel)]
+    return {key: value for key, value in scene.vehicle.items() if key != "body"} | {"wheel": wheels}
+
+
+def is_of_carriage(wheel: Mapping[str, Any]) -> bool:
+    """Whether a wheel of a scene is on body 0."""
+    return bool(wheel.get("body", CARRIAGE) == CARRIAGE)
+
+
+def _rolling(scene: Scene, carriage: Mapping[str, Any]) -> Rolling | None:
+    """None where the wheels of the carriage do not determine the motion: then there is no odometry."""
+    if not carriage["wheel"]:
         return None
     try:
-        return rolling_of(scene.core(), scene.vehicle, scene.path)
+        return rolling_of(scene.core(), carriage, scene.path)
     except BadInput:
         return None
-
-
-def write_run(run: Any, bag: BagWriter) -> RunTopics:
-    """All rows of a simulated run."""
-    from laconic.base.progress import progress_bar
-
-    topics = RunTopics(run.scene, bag)
-    names = [name for name in needed_signals(run.scene) if name in run.columns]
-    table = np.column_stack([run.columns[name] for name in names])
-    with progress_bar("writing the bag", len(run.time_s)) as advance:
-        for time_s, row in zip(run.time_s.tolist(), table.tolist(), strict=True):
-            topics.take(time_s, dict(zip(names, row, strict=True)))
-            advance(1)
-    return topics

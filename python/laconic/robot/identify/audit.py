@@ -18,9 +18,9 @@ from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.rolling_evidence import run_of, stretch_errors
 from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import for_vehicle
 from laconic.robot.logs.poses import at_times
 from laconic.robot.replay.measures import path_length
+from laconic.robot.replay.missed_wraps import fitting
 from laconic.robot.replay.rolled_paths import roll
 from laconic.robot.replay.rolling import path_of, rolling_of
 from laconic.scene import Scene
@@ -77,7 +77,7 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     if slips(scene.vehicle):
         raise BadInput(f"{scene.path}: has a [ground] with friction; give the scene without it, as an audit compares "
                        "with rolling and names slip as what is left")
-    runs = [for_vehicle(log, scene.vehicle) for log in logs]
+    runs = fitting(scene, logs)
     for run in runs:
         run.needs("pose", "an audit")
     lag_s = lag_of(scene, runs)

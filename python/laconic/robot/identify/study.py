@@ -14,9 +14,9 @@ from laconic.robot.identify.solve import Fit, fit
 from laconic.robot.identify.words import in_words
 from laconic.robot.identify.words_of_errors import of_errors
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import for_vehicle
 from laconic.robot.logs.log import remarks_of
 from laconic.robot.replay.measures import RunErrors
+from laconic.robot.replay.missed_wraps import fitting
 from laconic.robot.replay.predicted import predict
 from laconic.scene import Scene
 from laconic.scene.speed_controller import SpeedController
@@ -45,7 +45,7 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
              leave_out: str | None = None, with_controller: bool = False,
              advance: Callable[..., None] = lambda *_, **__: None) -> Study:
     """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it."""
-    runs, others = ([for_vehicle(log, scene.vehicle) for log in given] for given in (logs, judge))
+    runs, others = (fitting(scene, given) for given in (logs, judge))
     need_currents(parameters, runs, scene)
     found = _fit(scene, runs, parameters)
     advance()

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput, Refused
+from laconic.robot.importer.first_run import Promise
 from laconic.robot.importer.hung import CARRIAGE, COORDINATED, FREE, PRESCRIBED, HungBody, rolling_of
 from laconic.robot.importer.hung_scene import Placed, rate_of
 from laconic.robot.importer.rigid_body import RigidBody
@@ -30,6 +31,7 @@ ROUNDS, GOOD, MOST = 4, 0.003, 4.0
 STEP_S = 0.01
 TURN_S = 2.0  # from the end of the ramp to that of the pulse that turns
 LEAD_M, BRIEF_S = 1e-3, 3.0  # a turn that its own mass tightens is short
+SETTLES_S = 1.0  # of a turn that has begun
 ALONG = 0.5  # of a driven wheel's way that must lie ahead
 
 Tables = list[dict[str, Any]]
@@ -88,6 +90,7 @@ class Driven:
     duration_s: float
     words: tuple[str, ...]
     remark: str = ""
+    promise: Promise = Promise(None)
 
 
 def drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[float], float]) -> Driven:
@@ -128,7 +131,9 @@ def _drive(plan: Plan, data: Mapping[str, Any], where: Any, rounded: Callable[[f
         words = (f"{words[0]}, and then turn it to the left",)
         ends_s = plan.ramp_s + TURN_S + (2.0 * math.pi / plan.yaw_rate_rad_per_s if _lead(plan) > -LEAD_M else BRIEF_S)
     duration = float(math.ceil(min(max(ends_s, SHORTEST_S), LONGEST_S)))
-    return Driven([*inputs, *steering], duration, (*words, *steer_words), remark)
+    turns_at_s = plan.ramp_s + TURN_S - 2.0 * RAMP_S if differ else plan.ramp_s + 0.5 if steering else math.inf
+    promise = Promise(plan.ahead, turns_at_s, SETTLES_S, plan.ramp_s)
+    return Driven([*inputs, *steering], duration, (*words, *steer_words), remark, promise)
 
 
 # ------------------------------------------------------------------------------------------ torques

@@ -71,7 +71,13 @@ class HungWriter(Writer):
             self.comments["input", str(at), "signal"] = f"assumption: {words}"
         data["run"] = {"duration_s": driven.duration_s, "step_s": STEP_S}
         self.check_run(data)
+        self.promise = driven.promise
+        self.judge(self.checked(data))
         return self.written(data, standing, self.tables.words())
+
+    def motors(self) -> list[str]:
+        """The driven wheels, on hinges too."""
+        return [each.wheel.name for each in self.placed if each.is_driven]
 
     def vehicle(self) -> dict[str, Any]:
         """`[vehicle]` is the carriage alone; then wheels, bodies, supports."""

@@ -16,6 +16,7 @@ from laconic.robot.importer.answers import Answers
 from laconic.robot.importer.axle_lines import brought_to_meet, straightened
 from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
 from laconic.robot.importer.dropped import drives_elsewhere, dropped_of, idle_of
+from laconic.robot.importer.first_run import Damping, Promise, steadied, unrest_of
 from laconic.robot.importer.formats import read_robot
 from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.hung import on_one_axle
@@ -102,8 +103,8 @@ def import_robot(path: Path, answers: Answers) -> Imported:
     if on_hinges:
         from laconic.robot.importer.hung_writer import HungWriter  # which builds on this module
 
-        return HungWriter(robot, ground, kinds, whole, answers).imported()
-    return Writer(robot, ground, kinds, whole, answers).imported()
+        return steadied(lambda *how: HungWriter(robot, how[0], kinds, whole, answers, how[1]), ground, whole.mass_kg)
+    return steadied(lambda *how: Writer(robot, how[0], kinds, whole, answers, how[1]), ground, whole.mass_kg)
 
 
 def in_one_line(text: str) -> str:
@@ -115,8 +116,10 @@ def in_one_line(text: str) -> str:
 class Writer:
     """Collects the tables and their comments."""
 
-    def __init__(self, robot: Robot, ground: Ground, kinds: Sequence[Kind], whole: RigidBody, answers: Answers):
+    def __init__(self, robot: Robot, ground: Ground, kinds: Sequence[Kind], whole: RigidBody, answers: Answers,
+                 damping: Damping | None = None):
         self.robot, self.ground, self.kinds, self.whole, self.answers = robot, ground, kinds, whole, answers
+        self.damping, self.promise, self.fault = damping, Promise(None), ""
         self.comments: Comments = {}
         self.every = ground  # with the wheels on hinges
         self.begin()
@@ -151,8 +154,19 @@ class Writer:
         data |= {"input": self.push(scene)} | run
         if slips:
             data["outputs"] = {"every_s": STEP_S, "signals": self.signals(data)}
-        self.checked(data)
+        self.judge(self.checked(data))
         return self.written(data, standing)
+
+    def judge(self, scene: Scene) -> None:
+        """Simulates the first run, and remarks where it is unstable or not what its line says."""
+        if scene.inputs:
+            self.fault = unrest_of(scene, self.promise, self.ground.wheels, self.whole.com_m)
+        if self.fault:
+            self.remarks.append(self.fault)
+
+    def motors(self) -> list[str]:
+        """The driven wheels."""
+        return [wheel.name for wheel in self.ground.wheels if wheel.joint not in self.idle]
 
     def written(self, data: dict[str, Any], standing: Standing, hinges: Sequence[str] = ()) -> Imported:
         """The tables as text with their comments, and what is told besides."""
@@ -243,7 +257,7 @@ class Writer:
                 "that of link",
                 f"# {self.robot.base}; all joints are in their zero position.", *MOTOR, self.gear()]
         if any(wheel.joint.damping_Nms > 0.0 for wheel in self.every.wheels):
-            told += DAMPED
+            told += DAMPED[1:] if self.damping else DAMPED
         if self.remarks:
             told += ["# Seen on the way:", *(f"#   {remark}" for remark in self.remarks)]
         return told
@@ -328,6 +342,8 @@ class Writer:
                 continue
             found[of_all] = value
             self.comments["vehicle", of_all] = why
+            if key == "motor_damping_Nms" and self.damping:
+                self.comments["vehicle", of_all] = self.damping.words(value)
             if key == "inertia_kgm2" and any(wheel.joint.armature_kgm2 for wheel in self.every.wheels):
                 self.comments["vehicle", of_all] = WITH_ARMATURE
             for index, wheel in enumerate(wheels):
@@ -357,6 +373,7 @@ class Writer:
         if by_force:
             what = (f"this force takes the place of {' and '.join(elsewhere)} and "
                     + found.way.replace("push", "pushes").replace("turn", "turns"))
+        self.promise = Promise(None if found.straight is None else np.array(found.straight), fast_at_s=PUSH_S)
         self.comments["input", "0", "signal"] = f"assumption: {what}{found.measured} {self.reached(found)}"
         if found.instead:
             self.remarks.append(self.named(f"{found.instead}; the inputs {found.way} instead"))

@@ -43,6 +43,7 @@ class Push:
     way: str = "push ahead"  # what they do
     measured: str = ""  # what has the speed, where it is not the robot
     instead: str = ""  # why they do not push ahead
+    straight: tuple[float, float] | None = None  # the way, in axes of the body; None for a turn
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,8 @@ class _Rolling:
 def _corrected(scene: Scene, values: Values, rolling: _Rolling, way: Way, instead: str) -> Push:
     """The inputs, made larger or smaller where slip took a part of their effect; those that go aside are none."""
     wanted = ACCELERATION_M_PER_S2 * PUSH_S
-    best = Push(values, 0.0, "", way.words, ", its fastest wheel" if way.is_turn else "", instead)
+    straight = None if way.is_turn else (float(way.direction[0]), float(way.direction[1]))
+    best = Push(values, 0.0, "", way.words, ", its fastest wheel" if way.is_turn else "", instead, straight)
     for _ in range(ROUNDS):
         reached = speed_along(scene, values, rolling, way)
         if reached is None:

@@ -6,8 +6,11 @@ by its beginning.
 
 from __future__ import annotations
 
+import gc
+import importlib.util
 import logging
 import re
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -19,8 +22,9 @@ import can
 from laconic.base.text_file import TextOfFile, beginning_of, text_of_file
 from laconic.errors import BadInput, reason_of
 
-CAN_ENDINGS = (".asc", ".blf", ".log", ".trc")
-WANTED = "a CAN log: .asc, .blf, .log of candump, or .trc"
+CAN_ENDINGS = (".asc", ".blf", ".log", ".trc", ".mf4")
+WANTED = "a CAN log: .asc, .blf, .log of candump, .trc, or .mf4"
+MF4 = (".mf4", ".mdf")
 STANDARD, EXTENDED = 0x7FF, 0x1FFFFFFF   # largest identifiers of 11 and of 29 bits
 FD_LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)  # by the data length code
 
@@ -164,20 +168,42 @@ def doubts_are_errors() -> Iterator[None]:
         logger.propagate = propagate
 
 
+def needs_of(path: Path) -> None:
+    """ModuleNotFoundError for a format whose package is not installed: python-can would only refuse the file."""
+    if path.suffix.lower() in MF4 and importlib.util.find_spec("asammdf") is None:
+        raise ModuleNotFoundError("no asammdf", name="asammdf")
+
+
 def _by_library(path: Path) -> Recorded:
     """A log of another kind that python-can reads."""
     frames: list[LoggedFrame] = []
-    try:
-        with doubts_are_errors(), can.LogReader(str(path)) as reader:
-            for number, each in enumerate(reader, start=1):
-                channel = each.channel if isinstance(each.channel, int) else str(each.channel or "")
-                frames.append(LoggedFrame(
-                    f"frame {number}", each.timestamp, channel, each.arbitration_id, bytes(each.data or b""),
-                    extended=each.is_extended_id, remote=each.is_remote_frame, error=each.is_error_frame,
-                    fd=each.is_fd, sent=not each.is_rx, switched=each.bitrate_switch, length=each.dlc))
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give {WANTED}") from None
-    except Exception:  # a parser may raise any exception on unexpected bytes
-        after = f"after frame {len(frames)}" if frames else "from its beginning"
-        raise BadInput(f"{path}: cannot be understood as a CAN log {after}; give {WANTED}") from None
+    needs_of(path)
+    fault = ""
+    with silent_ends():
+        try:
+            with doubts_are_errors(), can.LogReader(str(path)) as reader:
+                for number, each in enumerate(reader, start=1):
+                    channel = each.channel if isinstance(each.channel, int) else str(each.channel or "")
+                    frames.append(LoggedFrame(
+                        f"frame {number}", each.timestamp, channel, each.arbitration_id, bytes(each.data or b""),
+                        extended=each.is_extended_id, remote=each.is_remote_frame, error=each.is_error_frame,
+                        fd=each.is_fd, sent=not each.is_rx, switched=each.bitrate_switch, length=each.dlc))
+        except OSError as error:
+            fault = f"cannot be read ({reason_of(error)})"
+        except Exception:  # a parser may raise any exception on unexpected bytes
+            after = f"after frame {len(frames)}" if frames else "from its beginning"
+            fault = f"cannot be understood as a CAN log {after}"
+    if fault:
+        raise BadInput(f"{path}: {fault}; give {WANTED}")
     return Recorded(frames)
+
+
+@contextmanager
+def silent_ends() -> Iterator[None]:
+    """Objects of a reader that failed half way die within this context: their complaints are about nothing else."""
+    before, sys.unraisablehook = sys.unraisablehook, lambda _: None
+    try:
+        yield
+        gc.collect()
+    finally:
+        sys.unraisablehook = before

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -73,14 +73,21 @@ def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | 
         return log
     parts = {member: getattr(log, member) for member in MEMBERS.values() if getattr(log, member) is not None}
     if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in parts.values()):
-        return replace(log, **{member: value[:, :count] for member, value in parts.items()})
+        return replace(_with_wraps(log, lambda wraps: wraps[:, :count]),
+                       **{member: value[:, :count] for member, value in parts.items()})
     driven = [index for index, wheel in enumerate(wheels) if wheel.get("driven", True)]
     places = list(range(there)) if log.is_ordered else driven
     if there != len(places) or not set(driven) <= set(places) <= set(range(count)):
         raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot, or "
                        "driven = false for a wheel that the log has not")
     at_places: dict[str, Any] = {member: spread(value, places, count) for member, value in parts.items()}
-    return replace(log, **at_places)
+    return replace(_with_wraps(log, lambda wraps: spread(wraps, places, count)), **at_places)
+
+
+def _with_wraps(log: Log, of_wheels: Callable[[np.ndarray], np.ndarray]) -> Log:
+    """The log whose counter is that of the wheels as they are ordered now."""
+    counter = log.counter
+    return log if counter is None else replace(log, counter=replace(counter, wrap_rad=of_wheels(counter.wrap_rad)))
 
 
 def spread(values: np.ndarray, places: Sequence[int], count: int) -> np.ndarray:
@@ -103,6 +110,7 @@ def _by_radius(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | 
                        "radius_m in the map, with which the robot makes metres of angles")
     parts: dict[str, Any] = {member: getattr(log, member) / radii for member in log.by_radius}
     remark = f"metres of the wheels became angles by the scene's radius of {', '.join(f'{r:g}' for r in set(radii))} m"
+    log = _with_wraps(log, lambda wraps: wraps / radii) if "wheel_angle_rad" in log.by_radius else log
     return replace(log, by_radius=(), remarks=(*log.remarks, remark), **parts)
 
 
@@ -120,5 +128,6 @@ def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
     parts: dict[str, Any] = {member: spread(value, places, len(wheels)) for member in MEMBERS.values()
                              if (value := getattr(log, member)) is not None}
     ordered = [log.wheel_names[places.index(index)] if index in places else "" for index in range(len(wheels))]
+    log = _with_wraps(log, lambda wraps: spread(wraps, places, len(wheels)))
     return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True,
                    remarks=(*log.remarks, f"by their names {words}"), **parts)

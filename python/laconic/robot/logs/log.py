@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,6 +18,15 @@ LEAST_SAMPLES = 10
 MEMBERS = {"set_speed": "set_speed_rad_per_s", "wheel_angle": "wheel_angle_rad", "wheel_speed": "wheel_speed_rad_per_s",
            "current": "current_A", "voltage": "voltage_V"}
 """The member of a log that holds each quantity of the wheels."""
+
+
+@dataclass(frozen=True, eq=False)
+class Counter:
+    """Where the angles of the wheels begin again, by the map: evidence may show that a row missed half of that."""
+
+    said: str                               # as the map has it
+    wrap_rad: np.ndarray                    # one row: of each wheel, NaN: not measured
+    place: Callable[[int], str]             # names a sample of the log
 
 
 @dataclass(frozen=True)
@@ -42,6 +51,7 @@ class Log:
     remarks: tuple[str, ...] = ()           # what was left out of the file, or filled in
     by_radius: tuple[str, ...] = ()         # members that are in metres still: the scene's radius makes angles of them
     wheel_names: tuple[str, ...] = ()       # of the columns, where their order is not known yet
+    counter: Counter | None = None          # of wheel_angle_rad, until its rows were compared with other evidence
     column_names: tuple[str, ...] = ()      # of the joints of the scene's wheels, where the log names them
 
     @property

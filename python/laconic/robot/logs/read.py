@@ -13,13 +13,13 @@ from laconic.errors import BadInput
 from laconic.robot.logs import poses
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.for_vehicle import spread
-from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, Log
+from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, Counter, Log
 from laconic.robot.logs.quantity import YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
 from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
 from laconic.robot.logs.text_table import metadata_number, metadata_of
 from laconic.robot.logs.units import LATITUDE, OF_QUANTITY, OF_WHEEL, TICK, of_tread
-from laconic.robot.logs.wraps import TURNS, continuous, modulus_of, refuse_jumps
+from laconic.robot.logs.wraps import TURNS, continuous, doubt_of, folded, modulus_of, refuse_jumps, said_of
 
 HALF_TURN = np.pi
 
@@ -48,7 +48,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     by_radius = tuple(member for name, member in MEMBERS.items()
                       if member in found and is_by_scene_radius(columns.quantities[name]))
     log = Log(path, columns.name, time - time[0], is_ordered=is_ordered, remarks=remarks, by_radius=by_radius,
-              wheel_names=source.wheel_names, column_names=source.column_names, **found)
+              wheel_names=source.wheel_names, column_names=source.column_names,
+              counter=reader.counter(columns.quantities.get("wheel_angle"), chosen.rows), **found)
     pose = next((each for each in sampled if each.name == "pose" and each.name in chosen.values), None)
     return log if pose is None else poses.with_pose(log, columns.quantities["pose"], pose, chosen.values["pose"],
                                                source.time_s, chosen.rows)
@@ -60,6 +61,8 @@ class _Reader:
     def __init__(self, source: Source, columns: ColumnMap):
         self.source, self.map = source, columns
         self.remarks: list[str] = []
+        self.wraps: list[float] = []  # of the columns with angles of wheels, in their units; NaN: none
+        self.said = ""  # the map's wrap
         self._figure = _figures(source.path, columns)
 
     def _raw(self, quantity: Quantity) -> Raw | None:
@@ -120,14 +123,30 @@ class _Reader:
             column = np.cumsum(values[rows, index]) if is_difference else values[rows, index]
             name, place = f"{quantity.name} {label}", partial(_place_of, self.source, rows)
             modulus = modulus_of(quantity.wrap, turn, scales[index])
+            said = "" if modulus is None else said_of(quantity.wrap, modulus)
+            self.wraps.append(np.nan if modulus is None else modulus * abs(scales[index]))
+            self.said = said or self.said
             if modulus is not None and is_difference:
-                found[rows, index] = np.remainder(values[rows, index] + 0.5 * modulus, modulus) - 0.5 * modulus
+                found[rows, index] = folded(values[rows, index], modulus)
+                doubt = doubt_of(name, found[rows[1:], index], modulus, place, said)  # the first has none before it
+                self.remarks += [doubt] if doubt else []
             elif modulus is not None:
-                found[rows, index], doubt = continuous(self.source.path, name, column, modulus, unit, place)
+                found[rows, index], doubt = continuous(self.source.path, name, column, modulus, unit, place, said)
                 self.remarks += [doubt] if doubt else []
             elif quantity.wrap is None:
                 refuse_jumps(self.source.path, name, column, turn / abs(scales[index]), place)
         return found
+
+    def counter(self, quantity: Quantity | None, rows: np.ndarray) -> Counter | None:
+        """Where angles of wheels begin again, at the wheel and in SI units; None where they never do."""
+        if quantity is None or not self.said:
+            return None
+        wraps = np.array(self.wraps)
+        if quantity.members:
+            ends = np.cumsum(quantity.members)
+            wraps = np.array([part.min() for part in np.split(wraps, ends[:-1])])
+        wraps = _spread_by(quantity, np.abs(wraps * wheel_unit(quantity, self._figure))[None, :])
+        return Counter(self.said, wraps, partial(_place_of, self.source, rows))
 
     def _turn(self, quantity: Quantity) -> float:
         """One turn in the numbers of the column; infinite where the radius that makes lengths of it is the scene's."""

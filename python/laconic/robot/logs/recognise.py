@@ -16,7 +16,7 @@ from laconic.robot.logs.read import read_log
 from laconic.robot.logs.text_table import text_of
 
 ENDINGS = (".csv", ".csv.gz", ".txt", ".blf", ".asc")
-OF_CAN = (*ENDINGS[3:], ".log", ".trc", ".asc.gz", ".blf.gz", ".log.gz", ".trc.gz")
+OF_CAN = (*ENDINGS[3:], ".log", ".trc", ".mf4", ".asc.gz", ".blf.gz", ".log.gz", ".trc.gz")
 OF_TEXT = ENDINGS[:3]
 OF_FORMAT = {"can": OF_CAN, "text": OF_TEXT, "bag": OF_BAG, "mat": (".mat",)}
 """The endings that a map of each format looks for in a folder."""

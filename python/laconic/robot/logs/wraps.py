@@ -16,6 +16,7 @@ COUNTERS = tuple(float(1 << bits) for bits in (8, 10, 12, 13, 14, 15, 16, 18, 20
 TOLERANCE = 2e-3        # of a turn: angles are written with few decimals
 UNCERTAIN = 0.45        # of the wrap, from one sample to the next: the direction may be the other one
 MANY = 20.0             # times the usual step: a jump, in a column whose unit is not known
+REMEDY = "record more often, or count with a larger wrap"
 SMALL = 4.0             # steps around a jump that a counter's size may be off by
 
 Place = Callable[[int], str]
@@ -29,16 +30,21 @@ def modulus_of(wrap: float | bool | None, turn: float, scale: float) -> float | 
     return None if wrap is None or wrap is False else float(wrap)
 
 
-def continuous(path: Path, name: str, values: np.ndarray, modulus: float, unit: str,
-               place: Place) -> tuple[np.ndarray, str | None]:
+def said_of(wrap: float | bool | None, modulus: float) -> str:
+    """The wrap as the map has it, with its number."""
+    return f"wrap = true ({modulus:.9g})" if wrap is True else f"wrap = {modulus:.9g}"
+
+
+def continuous(path: Path, name: str, values: np.ndarray, modulus: float, unit: str, place: Place,
+               said: str) -> tuple[np.ndarray, str | None]:
     """(a column without its jumps, a remark where its direction is uncertain); BadInput beyond the modulus."""
     least, most = int(np.argmin(values)), int(np.argmax(values))
     span = float(values[most] - values[least])
     if span > modulus * (1.0 + TOLERANCE) or (unit == TICK and span >= modulus):
         raise BadInput(f"{path}: {name} goes from {values[least]:.9g} ({place(least)}) to {values[most]:.9g} "
-                       f"({place(most)}), more than wrap = {modulus:.9g} lets it; correct wrap in the map")
-    return values[:1] + np.concatenate([[0.0], np.cumsum(folded(np.diff(values), modulus))]), _doubt(
-        name, np.diff(values), modulus, place)
+                       f"({place(most)}), more than {said} lets it; correct wrap in the map")
+    steps = folded(np.diff(values), modulus)
+    return values[:1] + np.concatenate([[0.0], np.cumsum(steps)]), doubt_of(name, steps, modulus, place, said)
 
 
 def folded(steps: np.ndarray, modulus: float) -> np.ndarray:
@@ -47,13 +53,21 @@ def folded(steps: np.ndarray, modulus: float) -> np.ndarray:
     return found
 
 
-def _doubt(name: str, steps: np.ndarray, modulus: float, place: Place) -> str | None:
-    size = np.abs(folded(steps, modulus))
-    if not len(size) or size.max() < UNCERTAIN * modulus:
-        return None
-    worst = int(np.argmax(size))
-    return (f"{name} changes by {100.0 * size[worst] / modulus:.0f} % of wrap = {modulus:.9g} until "
-            f"{place(worst + 1)}, so its direction is uncertain; record more often")
+def doubt_of(name: str, steps: np.ndarray, modulus: float, place: Place, said: str) -> str | None:
+    """A remark on steps of about half the range, and on neighbours that differ by more than it: they may be turns the
+    other way around. `steps`: folded, from each sample to the next."""
+    size, change = np.abs(steps), np.abs(np.diff(steps))
+    if len(size) and size.max() >= UNCERTAIN * modulus:
+        worst = int(np.argmax(size))
+        return (f"{name} changes by {100.0 * size[worst] / modulus:.0f} % of {said} until {place(worst + 1)}, so its "
+                f"direction is uncertain; {REMEDY}")
+    if len(change) and change.max() > 0.5 * modulus:
+        worst = int(np.argmax(change))
+        before, after = (100.0 * each / modulus for each in steps[worst:worst + 2])
+        return (f"{name} changes by {before:.0f} % of {said} until {place(worst + 1)} and by {after:.0f} % until "
+                f"{place(worst + 2)}, which may be {after + np.copysign(100.0, before):.0f} %, so its direction is "
+                f"uncertain; {REMEDY}")
+    return None
 
 
 def refuse_jumps(path: Path, name: str, values: np.ndarray, turn: float, place: Place) -> None:

@@ -11,9 +11,9 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import for_vehicle
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.measures import RunErrors, grand_mean, session_means
+from laconic.robot.replay.missed_wraps import fitting
 from laconic.robot.replay.predicted import predict
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -41,14 +41,14 @@ class RolledPaths:
 
 def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs: str = "wheel-speeds") -> RolledPaths:
     """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
-    fitting = [for_vehicle(log, scene.vehicle) for log in logs]
-    if inputs == "wheel-speeds" and all(log.pose is None for log in fitting):
+    runs = fitting(scene, logs)
+    if inputs == "wheel-speeds" and all(log.pose is None for log in runs):
         other = next((f", or take --inputs {name}" for name, values in (
-            ("voltages", fitting[0].voltage_V), ("currents", fitting[0].current_A)) if values is not None), "")
-        raise BadInput(f"{fitting[0].path}: has no true pose to compare with; name its columns in the map, table "
+            ("voltages", runs[0].voltage_V), ("currents", runs[0].current_A)) if values is not None), "")
+        raise BadInput(f"{runs[0].path}: has no true pose to compare with; name its columns in the map, table "
                        f"[pose]{other}")
-    found = predict(scene, fitting, inputs)
-    return RolledPaths(scene, fitting, [path for path, _ in found], [errors for _, errors in found],
+    found = predict(scene, runs, inputs)
+    return RolledPaths(scene, runs, [path for path, _ in found], [errors for _, errors in found],
                        [path.name for path in skipped], inputs)
 
 

@@ -15,6 +15,7 @@ from laconic.robot.replay.compare import Comparison, compare
 from laconic.robot.replay.friction import MODELS, Friction, fit
 from laconic.robot.replay.log import recording_of
 from laconic.robot.replay.measures import RunErrors, all_errors
+from laconic.robot.replay.missed_wraps import fitting
 from laconic.robot.replay.rolling import rolling_of
 from laconic.tools.analyse.from_core import Subject
 
@@ -59,8 +60,9 @@ def compare_all(subject: Subject, logs: list[Log], fit_names: list[str], skipped
     if np.linalg.matrix_rank(subject.matrices.wheel_rows) < 3:
         raise BadInput(f"{subject.scene.path}: its wheel speeds do not determine its motion; replay needs wheels "
                        "that drive all three directions")
-    fitting = [recording for recording in runs if recording.name in fit_names]
-    models = [fit(subject, fitting, model) for model in MODELS]
+    logs = fitting(subject.scene, logs)
+    fitted_on = [recording for recording in runs if recording.name in fit_names]
+    models = [fit(subject, fitted_on, model) for model in MODELS]
     comparisons = []
     for recording in runs:
         comparisons.append(compare(subject, recording, models))

@@ -7,7 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from laconic.core.articulated import ArticulatedVehicle
+import numpy as np
+
+from laconic.core.articulated import ArticulatedPlant, ArticulatedVehicle
 from laconic.core.given import finite_number, number
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene, check_scene
@@ -18,6 +20,8 @@ from laconic.tools.analyse.hinged_turns import BodyCircle, Tree, tree_of
 
 SPEEDS_M_PER_S = (1.0, -1.0)
 AGREEMENT = 1e-9  # between the angles and rates of a turn and the core's, in SI
+ROUNDING = 1e-12  # of the largest voltage
+STEADY = 1e-9     # of the accelerations without voltages
 TITLES = {"limits": "Tightest turns", "turns": "Steady turns", "straight": "Straight motion"}
 
 
@@ -29,6 +33,7 @@ class SteadyTurn:
     curvature_per_m: float
     circles: tuple[BodyCircle, ...]
     confirmed: bool | None  # by the core; None where there is no such turn, or an angle is unknown
+    held_by_V: Mapping[str, float] | None = None  # voltages that keep it at 1 m/s, on the spot at 1 rad/s, by signal
 
     @property
     def radius_m(self) -> float:
@@ -102,16 +107,19 @@ def _curvature(given: float) -> float:
 def _turn(tree: Tree, vehicle: ArticulatedVehicle, asked: str, curvature: float) -> SteadyTurn:
     circles = tuple(tree.circles(tree.twist(curvature)))
     exists = not any(each.problem or each.period or math.isnan(each.radius_m) for each in circles)
-    return SteadyTurn(asked, curvature, circles, _confirmed(tree, vehicle, curvature, circles) if exists else None)
+    if not exists:
+        return SteadyTurn(asked, curvature, circles, None)
+    return SteadyTurn(asked, curvature, circles, *_confirmed(tree, vehicle, curvature, circles))
 
 
-def _confirmed(tree: Tree, vehicle: ArticulatedVehicle, curvature: float, circles: Sequence[BodyCircle]) -> bool:
-    """Whether the core allows this motion, with the same angles, which then stay as they are."""
+def _confirmed(tree: Tree, vehicle: ArticulatedVehicle, curvature: float, circles: Sequence[BodyCircle]
+               ) -> tuple[bool, dict[str, float] | None]:
+    """Whether the core allows this motion, with the same angles, which then stay as they are; and what holds it."""
     velocity, omega = tree.twist(curvature)
     there = velocity + 1j * omega * tree.centre
     angles = [limb.hinge.start_angle_rad if each.angle_rad is None else each.angle_rad
               for limb, each in zip(tree.limbs, circles, strict=True)]
-    inputs = {}
+    inputs: dict[str, list[float]] = {}
     if any(limb.hinge.kind == "coordinated" for limb in tree.limbs):
         inputs = {"steering_twist": [velocity.real, velocity.imag, omega]}
     pair, still = (there.real, there.imag), [0.0] * len(angles)
@@ -120,9 +128,34 @@ def _confirmed(tree: Tree, vehicle: ArticulatedVehicle, curvature: float, circle
         plant = vehicle.plant(velocity_m_per_s=pair, yaw_rate_rad_per_s=omega, hinge_angle_rad=angles,
                               hinge_rate_rad_per_s=still, inputs=inputs)
     except Refused:
-        return False
+        return False, None
     off = [math.remainder(a - b, 2.0 * math.pi) for a, b in zip(angles, plant.motion().hinge_angle_rad, strict=True)]
-    return max([plant.changed_m_per_s, *map(abs, off), *map(abs, rates)]) < AGREEMENT * max(1.0, abs(omega))
+    allowed = AGREEMENT * max(1.0, abs(omega))
+    of_rates = [allowed + tree.rounding_per_s(limb, each.velocity) for limb, each
+                in zip(tree.limbs, circles, strict=True)]
+    agrees = max([plant.changed_m_per_s, *map(abs, off)]) < allowed and all(
+        abs(rate) < most for rate, most in zip(rates, of_rates, strict=True))
+    return agrees, _held_by(vehicle, plant, inputs) if agrees else None
+
+
+def _held_by(vehicle: ArticulatedVehicle, plant: ArticulatedPlant, inputs: Mapping[str, list[float]]
+             ) -> dict[str, float] | None:
+    """The least voltages with which no velocity changes; None where motors cannot do that."""
+    signals = [f"voltage_V[{i + 1}]" for i in range(vehicle.wheel_count) if vehicle.model.wheel[i].gain_Nm_per_V]
+    signals += [f"hinge_voltage_V[{name}]" for b, name in enumerate(vehicle.names)
+                if vehicle.model.link[b].gain_Nm_per_V]
+    if not signals:
+        return None
+    try:
+        still = plant.rates(inputs)[1].ravel()
+        columns = [plant.rates({**inputs, signal: 1.0})[1].ravel() - still for signal in signals]
+        needed = np.linalg.lstsq(np.array(columns).T, -still, rcond=1e-12)[0]
+        needed[np.abs(needed) <= ROUNDING * np.abs(needed).max()] = 0.0
+        found = dict(zip(signals, needed.tolist(), strict=True))
+        left = float(np.abs(plant.rates({**inputs, **found})[1]).max())
+    except Refused:  # at a posture where wheels contradict each other by rounding
+        return None
+    return found if left <= STEADY * max(1.0, float(np.abs(still).max())) else None
 
 
 # ------------------------------------------------------------------------------------------- words
@@ -164,6 +197,10 @@ def _turn_words(tree: Tree, turn: SteadyTurn) -> str:
             pieces.append(f"{name} at {_degrees(each.angle_rad)}{beyond}{circle}")
         else:
             pieces.append(f"{name} at an angle that its wheels do not set")
+    if turn.held_by_V:
+        speed = "1 rad/s" if math.isinf(turn.curvature_per_m) else "1 m/s"
+        volts = ", ".join(f"{signal} = {value:.5g}" for signal, value in turn.held_by_V.items())
+        pieces.append(f"{volts} {'holds' if len(turn.held_by_V) == 1 else 'hold'} {speed}")
     return f"With {turn.asked} ({path}): {'; '.join(pieces)}."
 
 
@@ -212,6 +249,7 @@ def hinged_numbers(study: HingedStudy) -> dict[str, Any]:
 def _turn_numbers(turn: SteadyTurn, names: Sequence[str]) -> dict[str, Any]:
     return {"asked": turn.asked, "curvature_per_m": turn.curvature_per_m, "radius_m": turn.radius_m,
             "exists": not any(each.problem for each in turn.circles), "confirmed": turn.confirmed,
+            "held_by_V": None if turn.held_by_V is None else dict(turn.held_by_V),
             "bodies": {name: _circle_numbers(each) for name, each in zip(names, turn.circles, strict=True)}}
 
 

@@ -22,6 +22,7 @@ CHANGE = 1e-3     # of angles and, in their own units, of velocities
 WEIGHTS = {1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}  # of a central difference of fourth order
 AGREEMENT = 1e-6  # between the exact law and the core, of the largest growth
 ROUNDING = 1e-12  # of the matrix: it splits an m-fold eigenvalue by its m-th root, and the mean of the m is exact
+ROUNDINGS = 1e3   # that add up in an acceleration
 NOTHING = 1e-6    # of the largest eigenvalue
 OUTSIDE = ("body_force_N[1]", "body_force_N[2]", "body_moment_Nm")
 
@@ -86,11 +87,31 @@ class _Motions:
             columns.append(self.states(plant)[1] - still)
         needed = np.linalg.lstsq(np.array(columns).T, -still, rcond=1e-12)[0]
         self.inputs = {**self.commands, **{s: float(v) for s, v in zip(signals, needed, strict=True)}}
-        size = max(1.0, float(np.abs(still).max()))
-        if np.abs(self.states(plant)[1]).max() > 1e-7 * size:
-            raise BadInput(f"{self.tree.scene.path}: straight motion at {abs(self.velocity):g} m/s is not steady; give "
-                           "another --speed")
+        self.check_steady(self.states(plant)[1], max(1.0, float(np.abs(still).max())))
         return float(needed[0]), float(needed[1]), float(needed[2])
+
+    def check_steady(self, rate: np.ndarray, size: float) -> None:
+        """BadInput with the cause where what holds the motion leaves it accelerations above rounding, which grows as
+        the wheels of a hinge come near to it."""
+        left = np.abs(rate) / (1e-7 * size + ROUNDINGS * np.finfo(float).eps * self.sizes()**2)
+        worst = int(np.argmax(left))
+        if left[worst] <= 1.0:
+            return
+        hinge = self.free[worst % (len(self.free) + 3)] if worst % (len(self.free) + 3) < len(self.free) else None
+        start = f"{self.tree.scene.path}: straight motion at {abs(self.velocity):g} m/s is not steady"
+        if hinge is None:
+            raise BadInput(f"{start}: no force on the carriage and no torque of a hinge holds it; see the springs and "
+                           "start angles of its hinges")
+        limb = self.tree.limbs[hinge]
+        lever = f", whose wheels lie {abs(limb.axles[0].lever):.3g} m from it," if limb.follows else ""
+        raise BadInput(f"{start}: {limb.hinge.place} ({limb.hinge.name}){lever} keeps no angle; give it a longer trail"
+                       f"{'' if limb.follows else ', a spring or another start angle'}")
+
+    def sizes(self) -> np.ndarray:
+        """How fast each number of the row changes: 1, and of hinges that follow the growth of their angle."""
+        of_hinges = [max(1.0, abs(self.velocity) / abs(limb.axles[0].lever)) if limb.follows else 1.0
+                     for limb in (self.tree.limbs[k] for k in self.free)]
+        return np.array([*of_hinges, 1.0, 1.0, 1.0, *of_hinges])
 
     def changed(self, number: int, change: float) -> ArticulatedPlant:
         """With one number of the row changed."""
@@ -118,6 +139,8 @@ class _Motions:
                 slope += weight / CHANGE * (rate_up - rate_down)
             tangents.append(tangent)
             slopes.append(slope)
+        scale = np.concatenate([np.ones(len(self.free) + 3), 1.0 / self.sizes()[len(self.free) + 3:]])
+        tangents, slopes = [scale * each for each in tangents], [scale * each for each in slopes]
         left, sizes, right = np.linalg.svd(np.array(tangents).T)
         kept = sizes > 1e-5 * sizes[0]
         return np.asarray(left[:, : len(sizes)][:, kept].T @ np.array(slopes).T @ right[: len(sizes)][kept].T

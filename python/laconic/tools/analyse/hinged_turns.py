@@ -24,6 +24,7 @@ from laconic.simulation.loads import centre_of
 TINY = 1e-9          # of a length or a direction: rounding
 SCANNED = 2000       # turns from straight ahead to the spot
 HALVINGS = 60
+ROUNDINGS = 1e3      # that add up in a rate
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,11 @@ class Tree:
             known.append(each.angle_rad is not None)
             found.append(each)
         return found
+
+    @staticmethod
+    def rounding_per_s(limb: Limb, velocity: complex) -> float:
+        """What rounding of an angle leaves of the rate of a hinge, whose wheels may be near to it."""
+        return ROUNDINGS * np.finfo(float).eps * abs(velocity / limb.axles[0].lever) if limb.follows else 0.0
 
     def _circle(self, limb: Limb, q: complex, omega: float, parent_known: bool) -> BodyCircle:
         if not parent_known:

@@ -87,7 +87,7 @@ def _plain(value: float) -> sp.Integer | None:
     return sp.Integer(nearest) if nearest in (-1, 0, 1) and abs(value - nearest) < 1e-14 else None
 
 
-def _number(value: float) -> sp.Expr:
+def number_or_plain(value: float) -> sp.Expr:
     exact = _plain(value)
     return sp.Float(value, 17) if exact is None else exact
 
@@ -114,7 +114,7 @@ def derive(numbers: VehicleNumbers) -> Bracketed:
     basis, kept = solve_constraints(numbers.constraint_rows)
     if len(kept) == 3:
         return free
-    exact = sp.Matrix(3, len(kept), [_number(v) for v in basis.flat])
+    exact = sp.Matrix(3, len(kept), [number_or_plain(v) for v in basis.flat])
     fixed = " and ".join(f"nu_{k + 1}" for k in range(3) if k not in kept)
     return impose(free, exact, kept, name=f"{free.name}, {fixed} bound by constraints")
 
@@ -124,7 +124,7 @@ def motor_torques(numbers: VehicleNumbers) -> dict[sp.Symbol, sp.Expr]:
     nu = sp.Matrix(sp.symbols("nu_1 nu_2 nu_3", real=True))
     torques = {}
     for i, row in enumerate(numbers.wheel_rows, start=1):
-        speed = sp.Add(*(_number(float(s)) * v for s, v in zip(row, nu, strict=True)))
+        speed = sp.Add(*(number_or_plain(float(s)) * v for s, v in zip(row, nu, strict=True)))
         driving = sp.Float(float(numbers.motor_gain_Nm_per_V[i - 1]), 17) * sp.Symbol(f"U_{i}", real=True)
         damping = sp.Float(float(numbers.motor_damping_Nms[i - 1]), 17) * speed
         torques[sp.Symbol(f"M_{i}", real=True)] = driving - damping + sp.Symbol(f"T_{i}", real=True)

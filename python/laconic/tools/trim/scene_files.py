@@ -4,6 +4,8 @@
     files.header    laconic_scene.h: LACONIC_SCENE_HEADER of real.h
     files.table_h   laconic_scene_model.h, files.table_c: model, integrator and start as constants
 
+Of a vehicle with hinges these are those of articulated.h.
+
 The model is prepared here, so that flash contains neither preparation nor checks; the target would compute the same
 numbers, because every platform gives the same bits.
 """
@@ -11,6 +13,7 @@ numbers, because every platform gives the same bits.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +22,7 @@ from laconic.base.outputs import write_text
 from laconic.core import Core, load
 from laconic.core.plant import Plant
 from laconic.scene import Scene
+from laconic.scene.ground import check_rolling
 from laconic.scene.methods import ROWS
 from laconic.tools.trim.c_tables import initializer
 
@@ -47,10 +51,20 @@ class Needs:
 
 
 @dataclass(frozen=True)
+class HingeNeeds:
+    """The same of a vehicle with hinges, whose inputs are all there."""
+
+    damping: bool
+    wheel_angles: bool
+    slope: bool
+    friction: bool = False
+
+
+@dataclass(frozen=True)
 class Trimmed:
     """The generated files of one scene and scalar type."""
 
-    needs: Needs
+    needs: Needs | HingeNeeds
     method: str
     method_steps: tuple[str, ...]  # the core's functions that a step may reach through the method's pointer
     header: str
@@ -96,6 +110,8 @@ def needs_of(scene: Scene) -> Needs:
 
 def trimmed(scene: Scene, real: str) -> Trimmed:
     """Everything a build for this scene alone consists of."""
+    if scene.has_hinges:
+        return trimmed_with_hinges(scene, real)
     core = load(real)
     plant = scene.plant(core)
     method = plant.chosen_method
@@ -124,7 +140,8 @@ def header_of(scene: Scene, real: str, needs: Needs, method: str) -> str:
     lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
              "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H", *real_check(scene, real),
              f"#define LACONIC_MAX_WHEELS {max(1, n)}", f"#define LACONIC_MAX_SUPPORTS {supports}",
-             f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
+             "#define LACONIC_MAX_BODIES 0", f"#define LACONIC_WHEELS(model) ((void)(model), {n})",
+             "#define LACONIC_WITH_PREPARE 0"]
     lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
     lines += [f"#define LACONIC_WITH_{need} {int(NEED_OF.get(method) == need)}"
               for need in sorted(set(NEED_OF.values()) - {"NOTHING"})]
@@ -140,18 +157,22 @@ def real_check(scene: Scene, real: str) -> list[str]:
 
 def table_header(scene: Scene, real: str, needs: Needs) -> str:
     """laconic_scene_model.h."""
+    declared = ("extern const laconic_model laconic_scene_model;",
+                "extern const laconic_integrator laconic_scene_integrator;",
+                "extern const laconic_state laconic_scene_start;", *(FRICTION_TABLES if needs.friction else ()))
+    return _table_header(scene, real, FRICTION_STEPS if needs.friction else STEPS, declared)
+
+
+def _table_header(scene: Scene, real: str, steps: Sequence[str], declared: Sequence[str],
+                  includes: Sequence[str] = ()) -> str:
     single = "-DLACONIC_SINGLE " if real == "single" else ""
     return "\n".join([
-        f"/* {scene.path.name}, prepared: step it with", *(FRICTION_STEPS if needs.friction else STEPS),
+        f"/* {scene.path.name}, prepared: step it with", *steps,
         " * The structs are those of the library: what links the trimmed one is compiled like it, with",
         f" *     {single}-DLACONIC_SCENE_HEADER='\"laconic_scene.h\"'",
         " * Generated. */",
         "#ifndef LACONIC_SCENE_MODEL_H", "#define LACONIC_SCENE_MODEL_H", "", *real_check(scene, real), "",
-        '#include "laconic/laconic.h"', "",
-        "extern const laconic_model laconic_scene_model;",
-        "extern const laconic_integrator laconic_scene_integrator;",
-        "extern const laconic_state laconic_scene_start;",
-        *(FRICTION_TABLES if needs.friction else ()), "", "#endif", ""])
+        '#include "laconic/laconic.h"', *includes, "", *declared, "", "#endif", ""])
 
 
 STEPS = (
@@ -166,6 +187,48 @@ FRICTION_STEPS = (
 FRICTION_TABLES = (
     "", "#define LACONIC_SCENE_SLIPS", "extern const laconic_friction laconic_scene_friction;",
     "extern const laconic_slip laconic_scene_slip;")
+
+
+# ------------------------------------------------------------------------------- vehicles with hinges
+
+HINGE_INCLUDES = (
+    "#ifndef LACONIC_ARTICULATED_H /* laconic.h of the two files has it */", '#include "laconic/articulated.h"',
+    "#endif")
+HINGE_STEPS = (
+    " *     laconic_articulated_state state = laconic_scene_start;",
+    " *     laconic_articulated_ramp(&from, &to, laconic_scene_integrator.step_s);",
+    " *     laconic_articulated_step(&laconic_scene_model, &laconic_scene_integrator, &state, &from, &to, NULL);",
+    " * Coordinated and prescribed hinges start as the scene's inputs command them at 0 s.")
+
+
+def trimmed_with_hinges(scene: Scene, real: str) -> Trimmed:
+    """The files of a vehicle with hinges, for core_c/src and core_c/optional/articulated."""
+    from laconic.simulation.articulated import start_plant
+    from laconic.simulation.steering import Commands
+
+    check_rolling(scene, "trim of a vehicle with hinges")
+    scene, core = scene.with_run(real=real), load(real)
+    vehicle = scene.articulated_vehicle(core)
+    plant = start_plant(scene, vehicle, Commands(scene, vehicle, scene.inputs_on_grid()).first_row())
+    model, wanted = vehicle.model, {name.partition("[")[0] for name in scene.outputs.signals}
+    needs = HingeNeeds(any(model.decay_per_s) or any(link.drags for link in model.link),
+                       not wanted or "wheel_angle_rad" in wanted,
+                       bool(model.slope_acceleration.x or model.slope_acceleration.y))
+    lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
+             "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H", *real_check(scene, real),
+             f"#define LACONIC_MAX_WHEELS {max(1, scene.wheel_count)}", "#define LACONIC_MAX_SUPPORTS 1",
+             f"#define LACONIC_MAX_BODIES {vehicle.body_count}", "#define LACONIC_WITH_PREPARE 0"]
+    lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
+    values = {"model": model[0], "integrator": plant.integrator[0], "start": plant.c[0]}
+    kinds = {"model": "model", "integrator": "integrator", "start": "state"}
+    table = [f"/* {scene.path.name}, prepared. Generated. */", '#include "laconic_scene_model.h"', ""]
+    table += [f"const laconic_articulated_{kinds[name]} laconic_scene_{name} = {initializer(core.ffi, value, {})};"
+              for name, value in values.items()]
+    return Trimmed(needs, plant.method, (), "\n".join([*lines, "#endif", ""]),
+                   _table_header(scene, real, HINGE_STEPS, tuple(
+                       f"extern const laconic_articulated_{kinds[name]} laconic_scene_{name};" for name in values),
+                       HINGE_INCLUDES),
+                   "\n".join([*table, ""]))
 
 
 EACH_WHEEL = (

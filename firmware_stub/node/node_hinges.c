@@ -1,0 +1,346 @@
+/* Vehicles with hinges: COMMIT, RESET and SELECT for them, their commands, steps and outputs. */
+#include "node_internal.h"
+
+#if LACONIC_NODE_WITH_HINGES
+
+#include <string.h>
+
+/* ------------------------------------------------------------------------------------ vehicle -- */
+
+/* What does not act on a vehicle with hinges. 0 iff nothing of it was sent. */
+static uint8_t not_of_hinges(const laconic_parameters *new) {
+#if LACONIC_NODE_WITH_SENSORS
+    if (laconic_node_sensors_are_set(&new->sensors)) return LACONIC_SENSOR_FIELD_IMU_X;
+#endif
+    for (int k = 0; k < 3; k++)
+        if (new->start.nu_rad_per_s[k] != 0) return LACONIC_FIELD_START_NU;
+    return 0;
+}
+
+static laconic_status prepare(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+    const laconic_node_bodies *bodies = &new->bodies;
+    laconic_articulated_vehicle whole = {.base = new->vehicle, .body_count = bodies->body_count};
+    memcpy(whole.wheel_body, bodies->wheel_body, sizeof whole.wheel_body);
+    memcpy(whole.body, bodies->body, sizeof whole.body);
+    return laconic_articulated_prepare(&found->model, &whole, why);
+}
+
+static laconic_status set_start(laconic_node_hinges *hinges, laconic_refusal *why) {
+    return laconic_articulated_state_set(&hinges->state, NULL, &hinges->model, &hinges->start, &hinges->first, why);
+}
+
+/* The loaded vehicle, its step and its start. */
+static laconic_status find(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+    laconic_status status = prepare(found, new, why);
+    if (status == LACONIC_OK)
+        status =
+            laconic_articulated_integrator_prepare(&found->integrator, new->method, &found->model, new->step_s, why);
+    if (status != LACONIC_OK) return status;
+    found->here = true;
+    found->start = new->bodies.start;
+    found->start.x_m = new->start.x_m;
+    found->start.y_m = new->start.y_m;
+    found->start.heading_rad = new->start.heading_rad;
+    memcpy(found->first.hinge_rate_rad_per_s, new->bodies.hinge_rate_rad_per_s,
+           sizeof new->bodies.hinge_rate_rad_per_s);
+    memcpy(found->first.twist, new->bodies.twist, sizeof new->bodies.twist);
+    return set_start(found, why);
+}
+
+#if LACONIC_NODE_WITH_DRIVES
+/* A drive turns a wheel, or a hinge that nothing else moves: neither its own wheels nor a twist. */
+static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *found, uint8_t *field, uint8_t *item) {
+    const laconic_drive_plan *plan = &node->loader.parameters.drives;
+    const laconic_articulated_model *m = &found->model;
+    const uint8_t status = laconic_node_check_drives(node, plan, m->wheel_count + m->body_count, field, item);
+    if (status != 0) return status;
+    for (int32_t b = 0; b < m->body_count; b++) {
+        const laconic_hinge_motion motion = m->link[b].motion;
+        const bool turns = motion == LACONIC_MOTION_OWN || motion == LACONIC_MOTION_PRESCRIBED;
+        if (plan->protocol == 0 || turns || plan->drive[m->wheel_count + b].node_id < 0) continue;
+        *field = LACONIC_DRIVES_FIELD_DRIVE_NODE_ID;
+        *item = (uint8_t)(m->wheel_count + b + 1);
+        return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    }
+    return 0;
+}
+#endif
+
+/* The numbers that frames of every vehicle read from the plant, and nothing else of it. */
+static void count_in_plant(laconic_node *node) {
+    memset(&node->plant, 0, sizeof node->plant);
+    node->plant.model.wheel_count = node->hinges.model.wheel_count;
+    node->plant.integrator.step_s = node->hinges.integrator.step_s;
+}
+
+/* Frames that SELECT chose for the vehicle before stay chosen where this one has them. */
+static void adopt(laconic_node *node, const laconic_node_hinges *found) {
+    const uint8_t send = node->hinges.send;
+    node->hinges = *found;
+    node->hinges.send = send;
+    node->send &= (uint8_t)~SENDS_NOT_OF_HINGES;
+    node->raw_output.send &= (uint8_t)~RAW_NOT_OF_HINGES;
+    node->raw_input.hinge_count = found->model.body_count;
+#if LACONIC_NODE_WITH_SENSORS
+    memset(&node->sensors, 0, sizeof node->sensors);
+    node->has_sensors = false;
+#endif
+    node->pending &= ~PENDING_NOT_OF_HINGES;
+    count_in_plant(node);
+    node->start = node->loader.parameters.start;
+#if LACONIC_NODE_WITH_DRIVES
+    node->drive_plan = node->loader.parameters.drives;
+#endif
+#if LACONIC_NODE_WITH_ESTIMATE
+    node->estimates = false;
+#endif
+    node->model_is_wrong = false;
+    node->state = LACONIC_WIRE_STATE_READY;
+    laconic_node_clear_inputs(node);
+}
+
+uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *item) {
+    const laconic_parameters *new = &node->loader.parameters;
+    laconic_node_hinges found;
+    laconic_refusal why = {0};
+    *field = not_of_hinges(new);
+    if (*field != 0) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    memset(&found, 0, sizeof found);
+    const laconic_status status = find(&found, new, &why);
+    *field = (uint8_t)why.field;
+    *item = (uint8_t)why.item;
+    if (status != LACONIC_OK) return (uint8_t)status;
+#if LACONIC_NODE_WITH_DRIVES
+    const uint8_t refused = check_drives(node, &found, field, item);
+    if (refused != 0) return refused;
+#endif
+    adopt(node, &found);
+    return 0;
+}
+
+void laconic_node_drop_hinges(laconic_node *node) {
+    node->hinges.here = false;
+    node->hinges.send = 0;
+    node->raw_output.send_hinges = 0;
+    node->raw_input.take_hinges = 0;
+    node->raw_input.hinge_count = 0;
+    node->pending &= ~PENDING_OF_HINGES;
+}
+
+laconic_status laconic_node_restart_hinges(laconic_node *node, laconic_refusal *why) {
+    const laconic_status status = set_start(&node->hinges, why);
+    if (status == LACONIC_OK) node->plant.steps = 0;
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------- SELECT -- */
+
+#define UNUSED_SENDS 0xC0U
+#define UNUSED_TAKES 0xF0U
+
+bool laconic_node_may_select_hinges(const laconic_node *node, const uint8_t *data) {
+    if (((data[5] & UNUSED_SENDS) | (data[6] & UNUSED_TAKES) | data[7]) != 0) return false;
+    if (!node->hinges.here) return (data[5] | data[6]) == 0;
+    const uint32_t raw = data[3] & 0x7FU & RAW_NOT_OF_HINGES;
+    return (data[2] & SENDS_NOT_OF_HINGES) == 0 && raw == 0 && (data[4] & SELECTS_ESTIMATE) == 0;
+}
+
+void laconic_node_select_hinges(laconic_node *node, const uint8_t *data) {
+    node->hinges.send = data[5] & 7U;
+    node->raw_output.send_hinges = data[5] >> 3 & 7U;
+    node->raw_input.take_hinges = data[6] & LACONIC_RAW_HINGE_TAKES;
+}
+
+void laconic_node_publish_hinges(laconic_node *node) {
+    node->hinges.angle_group = 0;
+    node->hinges.rate_group = 0;
+    if (node->hinges.send & LACONIC_NODE_SEND_VELOCITY) node->pending |= BIT_OF(LACONIC_WIRE_VELOCITY);
+    if (node->hinges.send & LACONIC_NODE_SEND_HINGE_ANGLE) node->pending |= BIT_OF(LACONIC_WIRE_HINGE_ANGLE);
+    if (node->hinges.send & LACONIC_NODE_SEND_HINGE_RATE) node->pending |= BIT_OF(LACONIC_WIRE_HINGE_RATE);
+}
+
+/* ------------------------------------------------------------------------------------ commands -- */
+
+/* Rates and twist do not change. */
+static void hold(laconic_articulated_input *input) {
+    memset(input->hinge_acceleration_rad_per_s2, 0, sizeof input->hinge_acceleration_rad_per_s2);
+    memset(input->twist_rate, 0, sizeof input->twist_rate);
+}
+
+/* Forces and rates become 0, or before the first step those of the start; steered wheels keep their direction. */
+void laconic_node_clear_hinge_inputs(laconic_node *node) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const bool at_start = node->plant.steps == 0;
+    memset(hinges->input, 0, sizeof hinges->input);
+    for (int k = 0; k < 2; k++) {
+        if (at_start) hinges->input[k] = hinges->first;
+        memcpy(hinges->input[k].twist, at_start ? hinges->first.twist : hinges->twist, sizeof hinges->twist);
+    }
+    hinges->changes = false;
+}
+
+/* The least part of a twist that wheels of the carriage refuse is that of rounding to a frame's numbers; what is more
+ * stays, and the core refuses it. */
+#define ROUNDING_OF_TWIST ((laconic_real)1e-3)
+
+static laconic_real dot(laconic_vector a, laconic_vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/* Takes from a twist of S_0 what one row allows no motion to have. */
+static void roll_along(laconic_vector *twist, const laconic_vector *row) {
+    const laconic_real along = dot(*row, *twist), square = dot(*row, *row);
+    if (along * along > ROUNDING_OF_TWIST * ROUNDING_OF_TWIST * square * dot(*twist, *twist)) return;
+    twist->x -= along / square * row->x;
+    twist->y -= along / square * row->y;
+    twist->z -= along / square * row->z;
+}
+
+/* The twist next to the given one that the carriage's own wheels allow, which scaled numbers seldom are. */
+static void set_twist(laconic_node_hinges *hinges, const laconic_real given[3]) {
+    const laconic_articulated_model *m = &hinges->model;
+    laconic_vector at_com = {given[0] - given[2] * m->com_y_m, given[1] + given[2] * m->com_x_m, given[2]};
+    for (int32_t k = 0; k < m->held_count; k++) roll_along(&at_com, &m->held[k]);
+    hinges->input[1].twist[0] = at_com.x + at_com.z * m->com_y_m;
+    hinges->input[1].twist[1] = at_com.y - at_com.z * m->com_x_m;
+    hinges->input[1].twist[2] = at_com.z;
+}
+
+#define TWIST_PAGE 6U
+
+/* Three rates or voltages from a hinge on. False iff a number is for none, or one that takes no such command. */
+static bool set_three(laconic_node_hinges *hinges, bool voltages, int32_t first, const laconic_real number[3]) {
+    const laconic_articulated_model *m = &hinges->model;
+    if (first >= m->body_count) return false;
+    for (int32_t k = 0; k < 3; k++) {
+        const bool is_one = first + k < m->body_count;
+        const laconic_link *link = &m->link[is_one ? first + k : 0];
+        const bool takes = voltages ? link->gain_Nm_per_V != 0 : link->motion == LACONIC_MOTION_PRESCRIBED;
+        if (number[k] != 0 && !(is_one && takes)) return false;
+    }
+    for (int32_t k = 0; k < 3 && first + k < m->body_count; k++) {
+        if (voltages) hinges->input[0].hinge_voltage_V[first + k] = number[k];
+        *(voltages ? &hinges->input[1].hinge_voltage_V[first + k] : &hinges->input[1].hinge_rate_rad_per_s[first + k]) =
+            number[k];
+    }
+    return true;
+}
+
+bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t raw[3]) {
+    const bool voltages = page >= 3U;
+    const int32_t per_unit = page == TWIST_PAGE ? LACONIC_WIRE_STEERING_TWIST_1_PER_UNIT
+                             : voltages         ? LACONIC_WIRE_STEERING_HINGE_VOLTAGE_1_PER_UNIT
+                                                : LACONIC_WIRE_STEERING_HINGE_RATE_1_PER_UNIT;
+    laconic_real number[3];
+    for (int k = 0; k < 3; k++) number[k] = (laconic_real)raw[k] / (laconic_real)per_unit;
+    if (!node->hinges.here || page > TWIST_PAGE || (page == TWIST_PAGE && !node->hinges.model.coordinated))
+        return false;
+    if (page == TWIST_PAGE) {
+        set_twist(&node->hinges, number);
+    } else if (!set_three(&node->hinges, voltages, 3 * (int32_t)(page % 3U), number)) {
+        return false;
+    }
+    node->hinges.changes = true;
+    return true;
+}
+
+/* --------------------------------------------------------------------------------------- steps -- */
+
+/* One step along both inputs, after which those of its end act. */
+static laconic_status step_between(laconic_node *node, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    laconic_articulated_input *input = hinges->input;
+    laconic_articulated_ramp(&input[0], &input[1], hinges->integrator.step_s);
+    const laconic_status status =
+        laconic_articulated_step(&hinges->model, &hinges->integrator, &hinges->state, &input[0], &input[1], why);
+    if (status != LACONIC_OK) return status;
+    hold(&input[1]);
+    input[0] = input[1];
+    hinges->changes = false;
+    memcpy(hinges->twist, input[1].twist, sizeof hinges->twist);
+    node->plant.steps++;
+    return status;
+}
+
+static laconic_status step_held(laconic_node *node, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const laconic_articulated_input *input = &hinges->input[0];
+    const laconic_status status =
+        laconic_articulated_step(&hinges->model, &hinges->integrator, &hinges->state, input, input, why);
+    if (status != LACONIC_OK) return status;
+    hinges->input[1] = hinges->input[0];
+    memcpy(hinges->twist, input->twist, sizeof hinges->twist);
+    node->plant.steps++;
+    return status;
+}
+
+laconic_status laconic_node_step_hinges(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+    laconic_status status = LACONIC_OK;
+    for (; steps > 0 && status == LACONIC_OK; steps--) {
+        for (int k = 0; k < 2; k++) node->hinges.input[k].base = node->input[0];
+        status = node->hinges.changes ? step_between(node, why) : step_held(node, why);
+    }
+    return status;
+}
+
+laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refusal *why) {
+    for (int k = 0; k < 2; k++) node->hinges.input[k].base = node->input[k];
+    return step_between(node, why);
+}
+
+#if LACONIC_NODE_WITH_DRIVES
+laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const laconic_articulated_state before = hinges->state;
+    laconic_drives_act_with_hinges(&node->drives, &hinges->model, &node->input[0], hinges->input, now_us);
+    hinges->changes = true;
+    const laconic_status status = laconic_node_step_hinges(node, 1, why);
+    if (status == LACONIC_OK)
+        laconic_drives_measure_with_hinges(&node->drives, &hinges->model, &before, &hinges->state);
+    else
+        laconic_drives_off(&node->drives);
+    return status;
+}
+#endif
+
+/* ------------------------------------------------------------------------------------- outputs -- */
+
+void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node) {
+    laconic_articulated_motion_of(motion, &node->hinges.model, &node->hinges.state);
+}
+
+void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node) {
+    laconic_articulated_motion motion;
+    if (!node->hinges.here) {
+        laconic_pose_of(pose, &node->plant.model, &node->plant.state);
+        return;
+    }
+    laconic_node_motion_of(&motion, node);
+    pose->x_m = motion.x_m;
+    pose->y_m = motion.y_m;
+    pose->heading_rad = motion.heading_rad;
+    pose->heading_wrapped_rad = laconic_angle_wrapped(motion.heading_rad);
+}
+
+void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node) {
+    laconic_articulated_motion motion;
+    if (!node->hinges.here) {
+        laconic_plant_wheel_speeds(&node->plant, speed_rad_per_s);
+        return;
+    }
+    laconic_node_motion_of(&motion, node);
+    memcpy(speed_rad_per_s, motion.wheel_speed_rad_per_s,
+           (size_t)node->hinges.model.wheel_count * sizeof *speed_rad_per_s);
+}
+
+void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node) {
+    laconic_articulated_motion motion;
+    if (!node->hinges.here) {
+        laconic_plant_wheel_angles(&node->plant, angle_rad);
+        return;
+    }
+    laconic_node_motion_of(&motion, node);
+    memcpy(angle_rad, motion.wheel_angle_rad, (size_t)node->hinges.model.wheel_count * sizeof *angle_rad);
+}
+
+#else
+typedef int laconic_node_has_no_hinges; /* a file without a declaration is no C */
+#endif

@@ -1,0 +1,129 @@
+/* Tests of drives that turn steering axes, and wheels of a vehicle with hinges. */
+#include "hinge_bench.h"
+
+void setUp(void) { bench_begin(); }
+void tearDown(void) {}
+
+/* CANopen; node 1 turns the third wheel, node 2 the hinge behind the wheels. */
+static void begin_with_drives(const parameter *hinge) {
+    const parameter drives[] = {INTEGER(DRIVE_PROTOCOL, 0, 1), INTEGER(DRIVE_NODE_ID, 3, 1),
+                                INTEGER(DRIVE_NODE_ID, 4, 2)};
+    begin_tricycle(hinge);
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&drives[k]));
+    for (uint8_t item = 3; item <= 4; item++) {
+        const parameter numbers[] = {INTEGER(ENCODER_COUNTS, item, 1000),      NUMBER(DRIVE_GEAR_RATIO, item, -10),
+                                     NUMBER(DRIVE_TORQUE_CONSTANT, item, 0.1), NUMBER(DRIVE_CURRENT_LIMIT, item, 5),
+                                     NUMBER(DRIVE_SPEED_LIMIT, item, 4),       NUMBER(DRIVE_POSITION_GAIN, item, 5)};
+        for (int k = 0; k < 6; k++) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&numbers[k]));
+    }
+}
+
+static void start_drives(const parameter *hinge) {
+    begin_with_drives(hinge);
+    TEST_ASSERT_EQUAL_UINT8(0, commit());
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    TEST_ASSERT_EQUAL_INT32(2, node.drives.count);
+    TEST_ASSERT_EQUAL_UINT8(3, node.drives.wheel[1]);
+}
+
+static const parameter motor = INTEGER(BODY_HINGE, 1, LACONIC_HINGE_MOTOR);
+
+static void a_drive_turns_a_prescribed_axis_at_its_set_speed_within_its_limit(void) {
+    start_drives(&prescribed);
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_SPEED;
+    node.drives.drive[1].target.speed_rad_per_s = 3;
+    bench_pass_ms(100);
+    rate_is((laconic_real)-0.3); /* the gear is mirrored */
+    TEST_ASSERT_EQUAL_UINT8(0, node.drives.drive[1].limits);
+    node.drives.drive[1].target.speed_rad_per_s = 9;
+    bench_pass_ms(100);
+    rate_is((laconic_real)-0.4);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_DRIVE_AT_SPEED, node.drives.drive[1].limits);
+    const laconic_real counts = motion().hinge_angle_rad[0] * -10 * 1000 / (laconic_real)6.283185307;
+    const laconic_real off = (laconic_real)node.drives.drive[1].encoder.count - counts;
+    TEST_ASSERT_TRUE(off <= (laconic_real)0.01 && off >= (laconic_real)-1.01); /* counts are whole, downwards */
+}
+
+static void a_drive_brings_a_prescribed_axis_to_its_position(void) {
+    start_drives(&prescribed);
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_POSITION;
+    node.drives.drive[1].target.position_count = -500;
+    bench_pass_ms(6000);
+    const laconic_real off = motion().hinge_angle_rad[0] - (laconic_real)0.3141592654;
+    TEST_ASSERT_TRUE(off < (laconic_real)1e-3 && off > (laconic_real)-1e-3);
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_CURRENT; /* of which such an axis has none */
+    bench_pass_ms(20);
+    rate_is(0);
+}
+
+static void a_speed_that_is_no_number_is_a_fault_of_the_drive(void) {
+    start_drives(&prescribed);
+    node.drives.drive[1].settings.speed_limit_rad_per_s = 0;
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_SPEED;
+    node.drives.drive[1].target.speed_rad_per_s = LACONIC_REAL_MAX * 2;
+    bench_pass_ms(20);
+    TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_TARGET, node.drives.drive[1].faults);
+    rate_is(0);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_DRIVES, node.state);
+}
+
+static void a_drive_turns_a_motor_axis_by_its_torque(void) {
+    start_drives(&motor);
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_CURRENT;
+    node.drives.drive[1].target.current_A = 2;
+    bench_pass_ms(10);
+    TEST_ASSERT_TRUE(node.hinges.input[0].hinge_torque_Nm[0] == 2 * (laconic_real)0.1 * -10);
+    bench_pass_ms(100);
+    TEST_ASSERT_TRUE(motion().hinge_rate_rad_per_s[0] < (laconic_real)-0.1);
+    TEST_ASSERT_TRUE(node.drives.drive[1].speed_rad_per_s > 1 && node.drives.drive[1].encoder.count > 0);
+}
+
+static void a_drive_turns_a_wheel_of_a_vehicle_with_hinges(void) {
+    start_drives(&prescribed);
+    node.drives.drive[0].target.mode = LACONIC_DRIVE_CURRENT;
+    node.drives.drive[0].target.current_A = -5;
+    bench_pass_ms(500);
+    const laconic_articulated_motion now = motion();
+    TEST_ASSERT_TRUE(now.velocity_m_per_s[0] > (laconic_real)0.05);
+    const laconic_real counts = now.wheel_angle_rad[2] * -10 * 1000 / (laconic_real)6.283185307;
+    const laconic_real off = (laconic_real)node.drives.drive[0].encoder.count - counts;
+    TEST_ASSERT_TRUE(off <= (laconic_real)0.1 && off >= (laconic_real)-1.1);
+}
+
+static void a_drive_on_an_axis_that_a_twist_leads_is_refused(void) {
+    begin_with_drives(&coordinated);
+    send_parameter(&ahead);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, commit());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_FIELD_DRIVE_NODE_ID, data[4]);
+    TEST_ASSERT_EQUAL_UINT8(4, data[5]);
+}
+
+static void a_drive_beyond_the_last_hinge_is_refused(void) {
+    const parameter fifth = INTEGER(DRIVE_NODE_ID, 5, 3);
+    begin_with_drives(&prescribed);
+    send_parameter(&fifth);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_ABOVE_LIMIT, commit());
+    TEST_ASSERT_EQUAL_UINT8(5, data[5]);
+}
+
+static void no_brake_by_order_holds_a_vehicle_with_hinges(void) {
+    const parameter held = INTEGER(DRIVE_FAULTS, 4, LACONIC_DRIVE_ORDER_HELD);
+    const parameter lost = INTEGER(DRIVE_FAULTS, 4, LACONIC_DRIVE_FAULT_ENCODER);
+    start_drives(&prescribed);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, send_parameter(&held));
+    TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&lost));
+    TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_ENCODER, node.drives.drive[1].faults);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_drive_turns_a_prescribed_axis_at_its_set_speed_within_its_limit);
+    RUN_TEST(a_drive_brings_a_prescribed_axis_to_its_position);
+    RUN_TEST(a_speed_that_is_no_number_is_a_fault_of_the_drive);
+    RUN_TEST(a_drive_turns_a_motor_axis_by_its_torque);
+    RUN_TEST(a_drive_turns_a_wheel_of_a_vehicle_with_hinges);
+    RUN_TEST(a_drive_on_an_axis_that_a_twist_leads_is_refused);
+    RUN_TEST(a_drive_beyond_the_last_hinge_is_refused);
+    RUN_TEST(no_brake_by_order_holds_a_vehicle_with_hinges);
+    return UNITY_END();
+}

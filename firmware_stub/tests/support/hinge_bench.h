@@ -1,0 +1,102 @@
+/* A tricycle for the bench's node: two fixed wheels behind, one under a hinge 1 m ahead of them. */
+#ifndef HINGE_BENCH_H
+#define HINGE_BENCH_H
+
+/* clang-format off */
+#include "node_internal.h" /* first: bench.h names a variable as its functions name an argument */
+/* clang-format on */
+#include "bench.h"
+#include "laconic_node/crc.h"
+#include "unity.h"
+
+#define STEP_S ((laconic_real)0.01)
+#define NUMBER(field, item, value) {LACONIC_WIRE_FIELD_##field, item, (laconic_real)(value), false}
+#define INTEGER(field, item, value) {LACONIC_WIRE_FIELD_##field, item, (laconic_real)(value), true}
+
+typedef struct parameter {
+    uint8_t field, item;
+    laconic_real value;
+    bool integer;
+} parameter;
+
+static const parameter common[] = {
+    NUMBER(MASS, 0, 20),
+    NUMBER(YAW_INERTIA, 0, 2),
+    NUMBER(WHEEL_RADIUS, 0, 0.1),
+    NUMBER(WHEEL_INERTIA, 0, 0.01),
+    NUMBER(MOTOR_GAIN, 0, 0.5),
+    NUMBER(MOTOR_DAMPING, 0, 1),
+    INTEGER(METHOD, 0, 0),
+    NUMBER(STEP, 0, STEP_S),
+    INTEGER(WHEEL_COUNT, 0, 3),
+    INTEGER(WHEEL_KIND, 1, 2),
+    INTEGER(WHEEL_KIND, 2, 2),
+    INTEGER(WHEEL_KIND, 3, 2),
+    NUMBER(WHEEL_X, 1, 0),
+    NUMBER(WHEEL_X, 2, 0),
+    NUMBER(WHEEL_X, 3, 0),
+    NUMBER(WHEEL_Y, 1, 0.2),
+    NUMBER(WHEEL_Y, 2, -0.2),
+    NUMBER(WHEEL_Y, 3, 0),
+    NUMBER(AXLE, 1, -1.5707963267949),
+    NUMBER(AXLE, 2, -1.5707963267949),
+    NUMBER(AXLE, 3, -1.5707963267949),
+    INTEGER(BODY_COUNT, 0, 1),
+    INTEGER(WHEEL_BODY, 3, 1),
+    NUMBER(BODY_HINGE_X, 1, 1),
+    NUMBER(BODY_HINGE_Y, 1, 0),
+    NUMBER(BODY_MASS, 1, 1),
+    NUMBER(BODY_YAW_INERTIA, 1, 0.1),
+};
+static const parameter prescribed = INTEGER(BODY_HINGE, 1, LACONIC_HINGE_PRESCRIBED);
+static const parameter coordinated = INTEGER(BODY_HINGE, 1, LACONIC_HINGE_COORDINATED);
+static const parameter ahead = NUMBER(TWIST, 1, 1);
+
+static uint8_t data[LACONIC_FRAME_BYTES];
+
+static inline uint8_t send_word(const parameter *it, uint8_t upper, uint32_t word) {
+    const struct laconic_dbc_parameter_t frame = {
+        .upper_half = upper, .field = it->field, .item = it->item, .value = word};
+    laconic_dbc_parameter_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_PARAMETER, data);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+}
+
+static inline uint8_t send_parameter(const parameter *it) {
+    uint32_t words[sizeof(laconic_real) / 4];
+    if (it->integer) return send_word(it, 0, (uint32_t)it->value);
+    memcpy(words, &it->value, sizeof words);
+    uint8_t status = 0;
+    for (uint8_t k = 0; k < sizeof words / sizeof words[0]; k++) status = send_word(it, k, words[k]);
+    return status;
+}
+
+/* The status of COMMIT; its field and item stay in `data`. */
+static inline uint8_t commit(void) {
+    const struct laconic_dbc_commit_t frame = {.frame_count = node.loader.frame_count,
+                                               .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
+    laconic_dbc_commit_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_COMMIT, data);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+}
+
+static inline void begin_tricycle(const parameter *hinge) {
+    bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
+    for (size_t k = 0; k < sizeof common / sizeof common[0]; k++)
+        TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&common[k]));
+    TEST_ASSERT_EQUAL_UINT8(0, send_parameter(hinge));
+}
+
+static inline laconic_articulated_motion motion(void) {
+    laconic_articulated_motion now;
+    laconic_node_motion_of(&now, &node);
+    return now;
+}
+
+/* The first hinge's rate; it is a difference of two yaw rates, which rounds. */
+static inline void rate_is(laconic_real wanted) {
+    const laconic_real off = motion().hinge_rate_rad_per_s[0] - wanted;
+    TEST_ASSERT_TRUE(off < (laconic_real)1e-6 && off > (laconic_real)-1e-6);
+}
+
+#endif

@@ -1,0 +1,163 @@
+"""Drives on steering axes of a played vehicle: CiA 402 by PyPI's canopen, ODrive positions, and what is refused."""
+
+from __future__ import annotations
+
+import copy
+import math
+import struct
+from pathlib import Path
+from typing import Any
+
+import can
+import numpy as np
+import pytest
+from canopen.profiles.p402 import BaseNode402
+from canopen_bus import played_on_canopen
+
+from laconic import build_scene
+from laconic.can.play.settings import drive_settings
+from laconic.can.play.vehicle import played as without_motors
+from laconic.cli.main import run
+from laconic.errors import BadInput
+from laconic.scene import read_scene
+from laconic.scene.scene_tables import scene_tables
+from play_support import played
+
+TURN = 2.0 * math.pi
+AGV_COUNTS = 4096 * 100  # of the steering axis of tricycle_agv for one turn of the wheel
+
+
+def tables_of(name: str, **changes: Any) -> dict[str, Any]:
+    return copy.deepcopy(scene_tables(name).entries) | changes
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_profile_position_steers_a_tricycle_by_the_canopen_package(real: str, tmp_path: Path) -> None:
+    angle_rad, shaft_rad_per_s = 0.4, 60.0
+    with played_on_canopen(read_scene("tricycle_agv").with_run(real=real), tmp_path) as vehicle:
+        nodes = {node_id: vehicle.node(node_id, BaseNode402) for node_id in (1, 2)}
+        for node, mode in zip(nodes.values(), (3, 1), strict=True):
+            node.sdo["Modes of operation"].raw = mode
+            node.nmt.state = "PRE-OPERATIONAL"
+            node.setup_402_state_machine()
+            node.nmt.state = "OPERATIONAL"
+            node.state = "OPERATION ENABLED"
+        nodes[2].sdo["Profile velocity"].raw = round(2.0 / TURN * AGV_COUNTS)
+        for ramp in ("Profile acceleration", "Profile deceleration"):
+            nodes[2].sdo[ramp].raw = round(10.0 / TURN * AGV_COUNTS)
+        nodes[2].sdo["Target position"].raw = round(angle_rad / TURN * AGV_COUNTS)
+        nodes[2].controlword = 0x3F  # a new set-point, at once
+        nodes[1].sdo["Target velocity"].raw = round(shaft_rad_per_s / TURN * 4096)
+        vehicle.step(2400)
+        steering, traction = vehicle.drive(1), vehicle.drive(0)
+        assert (steering.wheel, traction.wheel) == (3, 0)  # behind three wheels
+        assert steering.wheel_angle_rad == pytest.approx(angle_rad, abs=1e-3)
+        assert nodes[2].sdo["Position actual value"].raw == pytest.approx(angle_rad / TURN * AGV_COUNTS, abs=80)
+        now = vehicle.vehicle.node.motion()
+        rolls = shaft_rad_per_s / 20.0 * 0.115
+        assert now.yaw_rate_rad_per_s == pytest.approx(rolls * math.sin(angle_rad) / 1.4, rel=2e-3)
+
+
+def test_the_core_takes_the_same_steps_with_the_torques_of_the_drives(tmp_path: Path) -> None:
+    scene = read_scene("tricycle_agv")
+    bare = without_motors(scene).articulated_vehicle(scene.core())
+    plant, row = bare.plant("auto", scene.run.step_s), bare.input_row()
+    slots = [bare.slot(name) for name in ("axle_torque_Nm[1]", "hinge_torque_Nm[front]")]
+    with played_on_canopen(scene, tmp_path) as vehicle:
+        for node_id, target in ((1, 4000), (2, 30000)):
+            node = vehicle.node(node_id, BaseNode402)
+            node.sdo["Modes of operation"].raw = 3
+            node.nmt.state = "PRE-OPERATIONAL"
+            node.setup_402_state_machine()
+            node.nmt.state = "OPERATIONAL"
+            node.state = "OPERATION ENABLED"
+            node.sdo["Target velocity"].raw = target
+        for _ in range(400):
+            vehicle.step()
+            row[slots] = [vehicle.drive(number).axle_torque_Nm for number in (0, 1)]
+            plant.follow(np.array([[row, row]]))
+            now, wanted = vehicle.vehicle.node.motion(), plant.motion()
+            assert (now.x_m, now.y_m, now.yaw_rate_rad_per_s) == (wanted.x_m, wanted.y_m, wanted.yaw_rate_rad_per_s)
+            assert vehicle.drive(1).wheel_angle_rad == wanted.hinge_angle_rad[0]
+    assert abs(wanted.hinge_angle_rad[0]) > 0.01 and wanted.x_m > 0.01
+
+
+# ---- ODrive
+
+
+def cansimple(node_id: int, command: int, layout: str, *values: float) -> can.Message:
+    """A frame of ODrive's CANSimple, from its documentation."""
+    return can.Message(arbitration_id=node_id << 5 | command, is_extended_id=False, data=struct.pack(layout, *values))
+
+
+SET_AXIS_STATE, SET_CONTROLLER_MODE, SET_INPUT_POS, SET_INPUT_VEL, ENCODER_ESTIMATES = 0x07, 0x0B, 0x0C, 0x0D, 0x09
+CLOSED_LOOP, BY_VELOCITY, BY_POSITION, PASSTHROUGH = 8, 2, 3, 1
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_odrive_positions_steer_a_tugger_whose_axis_follows_commands(real: str) -> None:
+    """Nodes 1 and 2 turn the rear wheels, node 3 the prescribed steering axis, by turns of its shaft."""
+    drives = {"protocol": "odrive", "node_ids": [1, 2, 3], "gear_ratio": [20.0, 20.0, 50.0]}
+    scene, angle_rad = build_scene(tables_of("tugger_train", rig={"drives": drives})).with_run(real=real), 0.3
+
+    modes = [(1, BY_VELOCITY), (2, BY_VELOCITY), (3, BY_POSITION)]
+
+    def commands(now_s: float) -> list[can.Message]:
+        if modes:
+            chosen = list(modes)
+            modes.clear()
+            return [message for node_id, control in chosen
+                    for message in (cansimple(node_id, SET_CONTROLLER_MODE, "<II", control, PASSTHROUGH),
+                                    cansimple(node_id, SET_AXIS_STATE, "<I", CLOSED_LOOP))]
+        speed = min(now_s, 2.0) * 5.0 / TURN
+        return [*(cansimple(node_id, SET_INPUT_VEL, "<ff", speed, 0.0) for node_id in (1, 2)),
+                cansimple(3, SET_INPUT_POS, "<fhh", angle_rad / TURN * 50.0, 0, 0)]
+
+    judgement, controller = played(scene, 4.0, commands)
+    assert judgement.passed, judgement.verdicts
+    place, speed = struct.unpack("<ff", controller.of(3 << 5 | ENCODER_ESTIMATES)[-1][1].data)
+    assert place / 50.0 * TURN == pytest.approx(angle_rad, abs=1e-4) and abs(speed) < 1e-3
+    assert judgement.figures["end_heading_rad"] > 0.02
+
+
+# ---- settings and refusals
+
+
+def test_a_steering_motor_gives_its_drive_gear_and_constants() -> None:
+    found = drive_settings(read_scene("tricycle_agv"), "canopen")
+    assert found.driven == (True, False, False, True) and found.node_ids[0] == 1 and found.node_ids[3] == 2
+    assert found.numbers["gear_ratio"] == (20.0, 0.0, 0.0, 100.0)
+    assert found.numbers["torque_constant_Nm_per_A"] == (0.09, 0.0, 0.0, 0.07)
+
+
+def test_the_drive_of_a_steering_motor_replaces_it_but_for_its_friction() -> None:
+    body, = without_motors(read_scene("tricycle_agv")).vehicle["body"]
+    assert (body["gain_Nm_per_V"], body["damping_Nms"]) == (0.0, pytest.approx(100.0**2 * 1e-4))
+
+
+@pytest.mark.parametrize("name, drives, message", [
+    ("mir_like", {"node_ids": [1, 2, False, False, False, False, 3, False, False, False]},
+     "gives hinge 1 a drive, and it is neither a motor nor prescribed"),
+    ("tricycle_agv", {"node_ids": [1, False, False]},
+     "has 3 entries; give one for each of the 3 wheels, then of the 1 hinges"),
+    ("tricycle_agv", {"node_ids": [1, 1]}, "1 is given twice")])
+def test_a_list_of_drives_counts_wheels_and_then_hinges(name: str, drives: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=message):
+        drive_settings(build_scene(tables_of(name, rig={"drives": {"protocol": "canopen", **drives}})), None)
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["f1tenth", "--drives", "odrive"], "coordinated ones turn together"),
+    (["tricycle_agv", "--drives", "canopen", "--fault", "stall:1@1"], "no brake holds a vehicle with hinges yet"),
+    (["tricycle_agv", "--drives", "canopen", "--bag", "out.mcap"], "--bag does not take vehicles with hinges yet")])
+def test_what_cannot_be_played_is_refused_in_one_line(arguments: list[str], message: str,
+                                                      capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", *arguments, "--listen", "0", "--duration", "1"]) == 2
+    told = capsys.readouterr().err
+    assert message in told and told.count("\n") == 1
+
+
+def test_a_node_process_plays_a_vehicle_with_hinges(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", "tricycle_agv", "--drives", "canopen", "--board", "process", "--listen", "0",
+                "--duration", "0.3"]) == 0
+    assert "never fired" in capsys.readouterr().out

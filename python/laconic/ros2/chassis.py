@@ -1,0 +1,195 @@
+"""Where the wheels of a vehicle with hinges are at given hinge angles, what they allow, and how to steer them.
+
+A twist is the velocity of the body frame's origin and the yaw rate. Rows have three columns for it and one for the rate
+of each hinge. A hinge is steered if it is commanded or has a motor, hangs on the carriage and carries a fixed wheel.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from laconic.core.articulated import CARRIAGE
+from laconic.errors import BadInput
+from laconic.scene import Scene
+
+STRAIGHT = np.array([1.0, 0.0, 0.0])
+HALVINGS = 40          # of the way to a command that the stops do not allow
+TINY = 1e-12
+
+
+@dataclass(frozen=True)
+class Steered:
+    """One hinge that the base turns."""
+
+    at: int                # its number among the hinges
+    name: str
+    kind: str              # "motor", "prescribed", "coordinated"
+    place: complex         # of the hinge, in the carriage's frame
+    ahead_rad: float       # the direction in which its wheel rolls, in its own frame
+    trail_m: float         # of the wheel ahead of the hinge in that direction; below 0 behind it
+    low_rad: float
+    high_rad: float
+    rate_limit_rad_per_s: float
+
+    def angle(self, twist: np.ndarray, near_rad: float) -> float | None:
+        """The angle at which its wheel rolls along a twist, within the stops and nearest to another angle; None: none.
+
+        A wheel rolls both ways, so half turns more or less serve as well.
+        """
+        ahead, left, turn = twist.tolist()
+        velocity = complex(ahead, left) + 1j * turn * self.place
+        across, size = turn * self.trail_m, abs(velocity)
+        if size < TINY:
+            return near_rad
+        if abs(across) > size:
+            return None
+        angle = cmath.phase(velocity) - self.ahead_rad + math.asin(across / size)
+        turns = round((near_rad - angle) / math.pi)
+        found = [angle + (turns + more) * math.pi for more in (0, 1, -1)]
+        found = [each for each in found if self.low_rad <= each <= self.high_rad]
+        return min(found, key=lambda each: abs(each - near_rad)) if found else None
+
+
+class Chassis:
+    """The geometry of one vehicle with hinges, as it is or as its base believes it to be."""
+
+    def __init__(self, scene: Scene, rate_limit_rad_per_s: float, *, size: float = 1.0,
+                 radius_m: tuple[float, ...] = ()):
+        vehicle = scene.vehicle
+        bodies, wheels = vehicle["body"], vehicle["wheel"]
+        names = [CARRIAGE, *(body["name"] for body in bodies)]
+        self._parents = [names.index(body["parent"]) for body in bodies]
+        self._hinges = [size * complex(body["hinge_x_m"], body["hinge_y_m"]) for body in bodies]
+        self.of_wheel = np.array([names.index(wheel.get("body", CARRIAGE)) for wheel in wheels])
+        self._place = np.array([size * complex(wheel["x_m"], wheel["y_m"]) for wheel in wheels])
+        axle = np.array([wheel["axle_rad"] for wheel in wheels])
+        is_fixed = np.array([wheel["kind"] == "fixed" for wheel in wheels])
+        roller = np.array([math.pi / 2 if wheel["kind"] == "fixed" else wheel["roller_rad"] for wheel in wheels])
+        self.radius_m = np.array(radius_m or [wheel.get("radius_m", vehicle["wheel_radius_m"]) for wheel in wheels])
+        self._along = np.exp(1j * (axle + roller))         # in which the ground holds the wheel, in its body's frame
+        self._across = np.exp(1j * axle)[is_fixed]
+        self._per_radius = 1.0 / (self.radius_m * np.sin(roller))
+        self._fixed = np.flatnonzero(is_fixed)
+        self._turned_by = np.array([[hinge in self._chain(body) for hinge in range(len(bodies))]
+                                    for body in self.of_wheel], float).reshape(len(wheels), len(bodies))
+        is_free = [each.kind == "free" for each in scene.hinges]
+        self.is_known = np.array([not any(is_free[hinge] for hinge in self._chain(body)) for body in self.of_wheel])
+        self._known_fixed = self.is_known[self._fixed]
+        self.length_m = max(float(np.abs([*self._hinges, *self._place[self.of_wheel == 0]]).max()), 1e-3)
+        self._scale = np.array([1.0, 1.0, self.length_m])
+        self.steered = [found for at in range(len(bodies))
+                        if (found := self._steered(scene, at, rate_limit_rad_per_s, is_fixed, axle)) is not None]
+        sliding = self.rows([0.0] * len(bodies))[1]
+        self._of_carriage = sliding[self.of_wheel[self._fixed] == 0, :3]
+        self.axle_x_m = self._axle(wheels, is_fixed)
+
+    def _chain(self, body: int) -> list[int]:
+        """Hinges between a body and the carriage."""
+        return [] if body == 0 else [*self._chain(self._parents[body - 1]), body - 1]
+
+    def _steered(self, scene: Scene, at: int, most: float, is_fixed: np.ndarray, axle: np.ndarray) -> Steered | None:
+        hinge = scene.hinges[at]
+        wheels = np.flatnonzero((self.of_wheel == at + 1) & is_fixed)
+        if hinge.kind == "free" or not len(wheels):
+            return None
+        if self._parents[at] != 0:
+            raise BadInput(f"{scene.path}: {hinge.place} ({hinge.name}): is steered and hangs on another body, which "
+                           "laconic ros2 cannot drive; hang it on the carriage")
+        direction = float(axle[wheels[0]]) + math.pi / 2
+        behind = (self._place[wheels].mean() * cmath.exp(-1j * direction)).real
+        return Steered(at, hinge.name, hinge.kind, self._hinges[at], direction, behind, hinge.low_rad, hinge.high_rad,
+                       min(hinge.rate_limit_rad_per_s, most))
+
+    def _axle(self, wheels: list[dict[str, Any]], is_fixed: np.ndarray) -> float | None:
+        """ξ of the carriage's fixed axle, whose wheels roll along ξ; None where it has none."""
+        places = [wheel["x_m"] for wheel, body, fixed in zip(wheels, self.of_wheel, is_fixed, strict=True)
+                  if fixed and body == 0 and abs(math.cos(wheel["axle_rad"])) < 1e-9]
+        return float(np.mean(places)) if places else None
+
+    @property
+    def wheelbase_m(self) -> float | None:
+        """From the fixed axle to the steered wheels; None for a vehicle that has no such axle or steers on it."""
+        if self.axle_x_m is None or not self.steered:
+            return None
+        base = abs(float(np.mean([(each.place + cmath.rect(each.trail_m, each.ahead_rad)).real
+                                  for each in self.steered])) - self.axle_x_m)
+        return base if base > 1e-6 * self.length_m else None
+
+    # ---- rows
+
+    def rows(self, angles: Any) -> tuple[np.ndarray, np.ndarray]:
+        """Rolling of wheels [rad/s], and sliding of fixed wheels along their axles [m/s]: (N, 3 + H) and (F, 3 + H)."""
+        origins, directions = [0j], [1 + 0j]
+        for parent, hinge, angle in zip(self._parents, self._hinges, angles, strict=True):
+            origins.append(origins[parent] + directions[parent] * hinge)
+            directions.append(directions[parent] * cmath.rect(1.0, angle))
+        turned, hinges = np.array(directions)[self.of_wheel], np.array(origins[1:])
+        places = np.array(origins)[self.of_wheel] + turned * self._place
+        arms = (places[:, None] - hinges[None, :]) * self._turned_by
+        roll = _projected(turned * self._along, places, arms) * self._per_radius[:, None]
+        fixed = self._fixed
+        return roll, _projected(turned[fixed] * self._across, places[fixed], arms[fixed])
+
+    def allowed(self, sliding: np.ndarray, along: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """What wheels that slide by these rows leave of a twist (3, 3), and the twist that hinge rates cause (3, H).
+
+        `along`: the only twist that coordinated hinges leave."""
+        side = sliding[self._known_fixed]
+        inverse = np.linalg.pinv(side[:, :3] / self._scale, rcond=1e-9)
+        caused = -(inverse @ side[:, 3:]) / self._scale[:, None]
+        if along is not None:
+            scaled = along * self._scale
+            return np.outer(along, scaled * self._scale) / float(scaled @ scaled), 0.0 * caused
+        keeps = np.eye(3) - inverse @ (side[:, :3] / self._scale)
+        return keeps * self._scale / self._scale[:, None], caused
+
+    def travelled(self, before: np.ndarray, after: np.ndarray, wheel_turns: np.ndarray, measured: np.ndarray
+                  ) -> tuple[float, float, float]:
+        """Ahead, left and turn from what encoders of wheels and steering show between two looks."""
+        roll, side = self.rows(0.5 * (before + after))
+        side, hinge_turns = side[self._known_fixed], after - before
+        metres = self.radius_m[measured]
+        rolled = metres * (wheel_turns[measured] - roll[measured, 3:] @ hinge_turns)
+        matrix = np.vstack([roll[measured, :3] * metres[:, None], side[:, :3]])
+        ahead, left, turn = np.linalg.lstsq(matrix, np.concatenate([rolled, -side[:, 3:] @ hinge_turns]), 1e-9)[0]
+        return float(ahead), float(left), float(turn)
+
+    # ---- commands
+
+    def possible(self, twist: np.ndarray, angles: np.ndarray) -> np.ndarray:
+        """The part of a twist that the fixed axle and the stops allow; it keeps the speed and gives up yaw rate."""
+        if len(self._of_carriage):
+            scaled = self._of_carriage / self._scale
+            twist = (np.eye(3) - np.linalg.pinv(scaled, rcond=1e-9) @ scaled) @ (twist * self._scale) / self._scale
+            if self.axle_x_m is not None:
+                twist[1] = -self.axle_x_m * twist[2]
+        if not twist.any() or self._is_reachable(twist, angles):
+            return twist
+        slow, fast = self._without_turn(twist), twist
+        if not slow.any() or not self._is_reachable(slow, angles):
+            return np.zeros(3)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (slow + fast)
+            slow, fast = (middle, fast) if self._is_reachable(middle, angles) else (slow, middle)
+        return slow
+
+    def _without_turn(self, twist: np.ndarray) -> np.ndarray:
+        side = 0.0 if self.axle_x_m is not None else twist[1]
+        return np.array([twist[0], side, 0.0])
+
+    def _is_reachable(self, twist: np.ndarray, angles: np.ndarray) -> bool:
+        return all(each.angle(twist, angles[each.at]) is not None for each in self.steered)
+
+
+def _projected(direction: np.ndarray, places: np.ndarray, arms: np.ndarray) -> np.ndarray:
+    """Velocity of points along a direction, for a unit of each number of the twist and each hinge rate."""
+    found = np.empty((len(places), 3 + arms.shape[1]))
+    found[:, 0], found[:, 1] = direction.real, direction.imag
+    found[:, 2] = (np.conj(direction) * 1j * places).real
+    found[:, 3:] = (np.conj(direction)[:, None] * 1j * arms).real
+    return found
