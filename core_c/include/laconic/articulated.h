@@ -79,7 +79,7 @@ typedef struct laconic_articulated_vehicle {
 } laconic_articulated_vehicle;
 
 /* Rows as in vehicle.h: X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED). laconic_field_name() and
- * laconic_field_path() know them; the node does not have them yet. */
+ * laconic_field_path() know them, and nodes with hinges take them. */
 /* clang-format off */
 #define LACONIC_BODY_FIELDS(X, of) \
     X(of,  97, BODY_PARENT,      parent,           body_parent,           INTEGER, UNCHECKED,    NEVER) \

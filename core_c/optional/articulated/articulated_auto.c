@@ -119,7 +119,7 @@ RARE laconic_status step_in_parts(laconic_articulated_state *state, const laconi
     return LACONIC_OK;
 }
 
-static laconic_status auto_by_rates(laconic_articulated_state *state, const laconic_articulated_model *m,
+INLINE laconic_status auto_by_rates(laconic_articulated_state *state, const laconic_articulated_model *m,
                                     const laconic_articulated_integrator *integrator, const articulated_course *course,
                                     laconic_refusal *why) {
     auto_progress p = {0U, WHOLE_STEP / (uint32_t)integrator->parts, integrator->parts > (int32_t)MOST_AUTO_PARTS};
@@ -158,7 +158,8 @@ RARE laconic_status step_that_keeps_energy(laconic_articulated_state *state, con
 laconic_status laconic_articulated_auto(laconic_articulated_state *state, const laconic_articulated_model *m,
                                         const laconic_articulated_integrator *integrator,
                                         const articulated_course *course, laconic_refusal *why) {
-    if (laconic_articulated_keeps_energy(m, course) && has_short_trail(m))
+    const bool is_damped = m->fastest_decay_per_s > R(0) || m->fastest_swing_per_s > R(0);
+    if (!is_damped && has_short_trail(m) && laconic_articulated_keeps_energy(m, course))
         return step_that_keeps_energy(state, m, integrator, course, why);
     return auto_by_rates(state, m, integrator, course, why);
 }

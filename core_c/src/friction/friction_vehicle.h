@@ -5,6 +5,8 @@
 #include "friction_solver.h"
 #include "step_internals.h"
 
+#if LACONIC_WITH_FRICTION
+
 /* Normal loads of wheels and supports, and whether each has lifted. */
 typedef struct normal_loads {
     real carried_N[LACONIC_SLIP_POINTS]; /* 0 where lifted                            */
@@ -90,4 +92,5 @@ static inline void force_in_body(real force_N[2], const laconic_friction_axle *a
     force_N[1] = along_across_N[0] * a->pull[1] + along_across_N[1] * a->pull[0];
 }
 
+#endif
 #endif

@@ -12,7 +12,9 @@ typedef struct wheel_values {
     real motor_damping_Nms;   /* c2_i */
 } wheel_values;
 
+#if LACONIC_WITH_FRICTION
 static inline real own_or_common(real own, real common) { return own > R(0) ? own : common; }
+#endif
 
 wheel_values laconic_wheel_values(const laconic_vehicle *vehicle, int32_t wheel);
 

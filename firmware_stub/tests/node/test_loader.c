@@ -325,11 +325,12 @@ static void every_wheel_has_its_own_drive_and_encoder(void) {
     }
 }
 
-static void no_wheel_beyond_the_last_has_a_drive_or_an_encoder(void) {
+static void no_axis_beyond_the_last_has_a_drive_and_no_wheel_an_encoder(void) {
     static const int fields[] = {LACONIC_DRIVES_FIELD_DRIVE_NODE_ID, LACONIC_SENSOR_FIELD_WHEEL_ENCODER_COUNTS};
+    static const uint8_t last[] = {LACONIC_DRIVE_AXES, LACONIC_MAX_WHEELS};
     for (int k = 0; k < 2; k++) {
         laconic_loader_begin(&loader);
-        send(0, fields[k], LACONIC_MAX_WHEELS + 1, 16);
+        send(0, fields[k], (uint8_t)(last[k] + 1U), 16);
         TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, loader.status);
     }
 }
@@ -431,7 +432,7 @@ int main(void) {
     RUN_TEST(an_integer_out_of_range_names_field_and_item);
     RUN_TEST(a_single_wheel_needs_the_numbers_of_wheels);
     RUN_TEST(every_wheel_has_its_own_drive_and_encoder);
-    RUN_TEST(no_wheel_beyond_the_last_has_a_drive_or_an_encoder);
+    RUN_TEST(no_axis_beyond_the_last_has_a_drive_and_no_wheel_an_encoder);
     RUN_TEST(every_field_of_a_vehicle_takes_its_own_items_alone);
     RUN_TEST(half_a_double_leaves_the_number_before);
     RUN_TEST(a_check_that_passes_names_nothing);

@@ -188,6 +188,14 @@ def test_reset_and_set_pose(services_for: tuple[str, ...]) -> None:
         assert rig.session.base.look()[0].x_m == rig.session.base.odometry[0].x_m == 0.0
 
 
+def test_a_request_that_cannot_be_read_is_told() -> None:
+    with rig_of(services_for=("fastrtps",)) as rig:
+        service = next(each for each in rig.session.robots[0].node.services if each.name.endswith("set_pose"))
+        assert service._answered(b"\x00\x01\x00\x00" + b"\xff" * 40, False) is None
+        rig.turn(2)
+        assert rig.lines == ["/laconic: laconic/set_pose: a request that cannot be read is ignored"]
+
+
 def test_services_have_the_hashes_of_their_messages() -> None:
     with rig_of() as rig:
         found = announced(rig.peer, BuiltinTopicDcpsPublication)

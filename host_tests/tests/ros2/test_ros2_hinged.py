@@ -147,7 +147,7 @@ def test_a_swerve_drive_keeps_turning_centres_out_of_its_wheels(first: tuple[flo
                                                                 ) -> None:
     base = hinged_base("frc_swerve_mk4i")
     for command in (first, second, first):
-        assert driven(base, 3.0, *command) == []
+        assert driven(base, 1.5, *command) == []
         assert base.look()[0].velocity == pytest.approx(command, abs=5e-3)
 
 
@@ -327,6 +327,13 @@ def test_a_base_table_names_the_hinges_too() -> None:
     assert hinged_base(scene).joint_names == names
     with pytest.raises(BadInput, match="steering_voltage_limit_V: has no effect: no wheel of this vehicle is steered"):
         build_scene(scene_tables("robotino2").entries | {"base": {"steering_voltage_limit_V": 1.0}})
+
+
+def test_ground_with_friction_is_not_taken_for_ideal_ground() -> None:
+    scene = read_scene("f1tenth")
+    slippery = replace(scene, vehicle=scene.vehicle | {"ground": {"friction_coefficient": 0.5}})
+    with pytest.raises(BadInput, match="ground.friction_coefficient: laconic ros2 drives vehicles with hinges"):
+        base_of(slippery)
 
 
 def test_a_robot_whose_driven_wheels_hang_on_casters_is_refused() -> None:

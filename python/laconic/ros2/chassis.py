@@ -139,12 +139,12 @@ class Chassis:
         """What wheels that slide by these rows leave of a twist (3, 3), and the twist that hinge rates cause (3, H).
 
         `along`: the only twist that coordinated hinges leave."""
+        if along is not None:
+            scaled = along * self._scale
+            return np.outer(along, scaled * self._scale) / float(scaled @ scaled), np.zeros((3, sliding.shape[1] - 3))
         side = sliding[self._known_fixed]
         inverse = np.linalg.pinv(side[:, :3] / self._scale, rcond=1e-9)
         caused = -(inverse @ side[:, 3:]) / self._scale[:, None]
-        if along is not None:
-            scaled = along * self._scale
-            return np.outer(along, scaled * self._scale) / float(scaled @ scaled), 0.0 * caused
         keeps = np.eye(3) - inverse @ (side[:, :3] / self._scale)
         return keeps * self._scale / self._scale[:, None], caused
 

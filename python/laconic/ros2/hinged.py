@@ -336,6 +336,9 @@ class HingedBase(Base):
 
     def _make(self, robots: int) -> tuple[Motion, Loop]:
         scene, table = self.scene, self.table
+        if scene.vehicle.get("ground", {}).get("friction_coefficient"):
+            raise BadInput(f"{scene.path}: ground.friction_coefficient: laconic ros2 drives vehicles with hinges on "
+                           "ideal ground alone; take it out, and give vehicle.friction_coefficient for the margin")
         most = table.steering_rate_limit_rad_per_s or STEERING_RAD_PER_S
         driven = driven_wheels(scene)
         self.believed = Chassis(scene, most, size=table.believed_size, radius_m=table.believed_radius_m)

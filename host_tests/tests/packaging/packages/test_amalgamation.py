@@ -51,6 +51,16 @@ def test_it_compiles_without_a_warning_in_every_language_that_it_promises(compil
             folder=pair / "laconic")
 
 
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("part", ["FRICTION", *(pytest.param(each, marks=pytest.mark.nightly) for each in (
+    "DAMPING", "SLOPE", "POSE", "OWN_WHEELS", "EXPONENTIAL_GAUSS"))])
+def test_it_compiles_without_a_warning_if_a_part_is_left_out(compiler, part, pair):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"no {compiler}")
+    run(compiler, "-std=c99", *STRICT, "-fsyntax-only", f"-DLACONIC_WITH_{part}=0", "laconic.c",
+        folder=pair / "laconic")
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize(("compiler", "standard"), [case for case in CASES if case[1][-2:] in ("99", "11", "20")])
 def test_every_public_header_stands_alone_in_every_language_that_it_promises(compiler, standard, tmp_path):

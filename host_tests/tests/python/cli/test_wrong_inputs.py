@@ -73,7 +73,7 @@ WRONG = {
     "ros2 robotino2 --loopback --map good.toml": "good.toml: image: is missing", "ros2 robotino2 --urdf ''": EMPTY,
     "ros2 robotino2 --urdf binary.toml": "binary.toml", "ros2 robotino2 --record good.csv": ".toml",
     "ros2 robotino2 --robots 2 --record a.toml": "--record", "ros2 robotino2 --spacing -1": "--spacing",
-    "ros2 robotino2 --rmw zenoh": "--rmw", "ros2 paper_caster --rate 7": "--rate",
+    "ros2 robotino2 --rmw opensplice": "--rmw", "ros2 paper_caster --rate 7": "--rate",
     "simulate skid_steer --enclose": "ground.friction_coefficient: wheels stick and slip",
     "simulate switched.toml --enclose": "vehicle.wheel[2].motor_circuit", "verify nowhere --enclose": "no such scene",
     "simulate limited.toml --enclose": "vehicle.drive: limits switch", "verify list.json --enclose": "no object",

@@ -22,6 +22,7 @@ from laconic.robot.bags.run_topics import RunTopics, needed_signals, open_bag
 
 INPUT = '[[input]]\nsignal = "voltage_V[{}]"\nkind = "steps"\nt_s = [0.0, 1.5, 3.0]\nvalue = {}\n'
 NAMES = ("run", "run.mcap")
+STORED = (*NAMES, "folder of mcap")
 
 
 def driven(folder: Path, old: str = "", new: str = "") -> Path:
@@ -33,7 +34,8 @@ def driven(folder: Path, old: str = "", new: str = "") -> Path:
 
 def recorded(folder: Path, name: str, scene: Path | None = None) -> Path:
     bag = folder / name
-    assert run(["simulate", str(scene or driven(folder)), "--bag", str(bag)]) == 0
+    storage = ["--storage", "mcap"] if name == "folder of mcap" else []
+    assert run(["simulate", str(scene or driven(folder)), "--bag", str(bag), *storage]) == 0
     return bag
 
 
@@ -52,7 +54,7 @@ def test_a_run_comes_back_with_the_errors_of_its_table(name, tmp_path, capsys):
     assert errors[0]["heading_error_rad"] < 1e-9
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", STORED)
 def test_identify_finds_the_wheels_of_the_robot_that_was_recorded(name, tmp_path, capsys):
     other = driven(tmp_path, 'kind = "fixed"', 'kind = "fixed"\nradius_m = 0.034')
     bag = recorded(tmp_path, name, other)
@@ -63,7 +65,7 @@ def test_identify_finds_the_wheels_of_the_robot_that_was_recorded(name, tmp_path
         assert found["low"] <= true <= found["high"] and abs(found["value"] - true) < 1e-4 * true
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", STORED)
 def test_other_readers_find_the_names_types_and_numbers_of_the_run(name, tmp_path):
     bag = recorded(tmp_path, name)
     trajectory = laconic.simulate(laconic.read_scene(str(tmp_path / "robot.toml")))
@@ -71,6 +73,7 @@ def test_other_readers_find_the_names_types_and_numbers_of_the_run(name, tmp_pat
         kinds = {each.topic: each.msgtype for each in reader.connections}
         messages = {topic: [reader.deserialize(data, each.msgtype) for each, _, data in reader.messages(
             [one for one in reader.connections if one.topic == topic])] for topic in kinds}
+    assert len(messages.pop("/tf_static")) == 1 and kinds.pop("/tf_static") == kinds["/tf"]
     assert kinds == {"/ground_truth/odom": "nav_msgs/msg/Odometry", "/odom": "nav_msgs/msg/Odometry",
                      "/joint_states": "sensor_msgs/msg/JointState", "/tf": "tf2_msgs/msg/TFMessage",
                      "/imu": "sensor_msgs/msg/Imu", "/wheel_voltages": "std_msgs/msg/Float64MultiArray"}
@@ -161,7 +164,8 @@ def test_a_played_vehicle_is_written_while_it_plays(tmp_path, capsys):
     capsys.readouterr()
     assert run(["logs", str(bag), "--json"]) == 0
     shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}
-    assert set(shown) == {"/ground_truth/odom", "/joint_states", "/odom", "/tf", "/imu"} and int(shown["/odom"]) > 5
+    assert set(shown) == {"/ground_truth/odom", "/joint_states", "/odom", "/tf", "/tf_static", "/imu"}
+    assert int(shown["/odom"]) > 5
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -181,4 +185,34 @@ def test_a_run_that_is_stopped_while_it_is_written_leaves_a_whole_recording(name
         write()
     assert run(["logs", str(bag), "--json"]) == 0
     shown = {each["topic"]: each["messages"] for each in json.loads(capsys.readouterr().out)["columns"]}
-    assert set(shown.values()) == {"201"}
+    assert shown.pop("/tf_static") == "1" and set(shown.values()) == {"201"}
+
+
+def test_joints_have_the_names_that_the_base_of_the_scene_gives_them(tmp_path):
+    scene = driven(tmp_path)
+    scene.write_text(scene.read_text() + '[base]\njoint_names = ["left_wheel_joint", "right_wheel_joint"]\n')
+    bag = recorded(tmp_path, "run.mcap", scene)
+    with bag.open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        found = [message for *_, message in reader.iter_decoded_messages(topics=["/joint_states"])]
+    assert list(found[0].name) == ["left_wheel_joint", "right_wheel_joint"]
+
+
+STEERED_MAP = """format = "bag"
+[wheel_angle]
+columns = ["/joint_states.position[wheel_1_joint]"]
+[steering_angle]
+columns = ["/joint_states.position[front_joint]"]
+[pose]
+topic = "/ground_truth/odom"
+"""
+
+
+def test_a_steered_run_comes_back_by_its_steering_angles(tmp_path, capsys):
+    bag, columns = tmp_path / "run.mcap", tmp_path / "map.toml"
+    columns.write_text(STEERED_MAP)
+    assert run(["simulate", "tricycle_agv", "--bag", str(bag)]) == 0
+    capsys.readouterr()
+    assert run(["replay", str(bag), "tricycle_agv", "--map", str(columns), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["runs"][0]
+    assert found["path_error"] < 1e-4 and found["heading_error_rad"] < 2e-4

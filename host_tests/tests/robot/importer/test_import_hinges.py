@@ -357,3 +357,11 @@ def test_sdf_links_without_inertial_have_the_formats_own(tmp_path: Path) -> None
     automatic = SDF.replace("<inertial>", '<inertial auto="true">', 1)
     assert any('<inertial auto="true"> is not computed of shapes' in each and "count for base" in each
                for each in imported(tmp_path, automatic, "robot.sdf")[0].remarks)
+
+
+@pytest.mark.parametrize("axis, hinges", [("0 0 1", ("front_turn",)), ("0 0 -1", ())])
+def test_joints_keep_their_names_for_ros_where_they_turn_alike(axis: str, hinges: tuple[str, ...], tmp_path: Path
+                                                               ) -> None:
+    _, scene = imported(tmp_path, robot(base(0.2), REAR, swivel("front", 0.5, 0.0, axis=axis),
+                                        control(("front_turn",), ("front",))))
+    assert scene.base is not None and scene.base.joint_names == ("left", "right", "front", *hinges)

@@ -380,3 +380,45 @@ def test_what_simulators_read_beyond_xml_is_read(tmp_path: Path, head: str) -> N
     broken = head + robot(TWO_WHEELS).replace("</link>", "</lnk>", 1)
     with pytest.raises(BadInput, match=f"line {1 + head.count(chr(10))}, column .*: the element that is closed is not"):
         imported(tmp_path, broken)
+
+
+CAR = f"""<sdf version="1.9"><model name="car"><link name="base"><inertial><mass>5</mass><inertia><ixx>0.1</ixx>
+<iyy>0.1</iyy><izz>0.08</izz></inertia></inertial></link>{WHEEL.format("left", "0.2")}{WHEEL.format("right", "-0.2")}
+{{}}</model></sdf>"""
+LASER = """<sdf version="1.9"><model name="sensor"><link name="body"><inertial><mass>2</mass><inertia><ixx>0.01</ixx>
+<iyy>0.01</iyy><izz>0.01</izz></inertia></inertial></link></model></sdf>"""
+JOINED = ('<joint name="hold" type="fixed"><parent>base</parent><child>laser::body</child></joint><include><name>laser'
+          "</name><uri>{}</uri><pose>0.3 0 0.1 0 0 0</pose></include>")
+CONFIG = '<model><name>kit</name><sdf version="1.9">kit.sdf</sdf></model>'
+
+
+@pytest.mark.parametrize("uri", ["model://kit", "kit/kit.sdf", "kit", "file://{folder}/kit/kit.sdf"])
+def test_an_included_model_that_is_near_is_read_with_its_mass_and_its_pose(tmp_path: Path, uri: str) -> None:
+    (tmp_path / "kit").mkdir()
+    (tmp_path / "kit" / "kit.sdf").write_text(LASER, encoding="utf-8")
+    (tmp_path / "kit" / "model.config").write_text(CONFIG, encoding="utf-8")
+    found, scene = imported(tmp_path, CAR.format(JOINED.format(uri.format(folder=tmp_path))), "car.sdf")
+    assert not any("<include>" in each for each in found.remarks)
+    assert scene.vehicle["mass_kg"] == pytest.approx(8.0)  # 5 + 2 + 2 · 0.5 kg
+    assert scene.vehicle["com_x_m"] == pytest.approx(2.0 * 0.3 / 8.0)
+
+
+def test_a_world_of_includes_alone_has_the_robot_of_a_file_that_is_near(tmp_path: Path) -> None:
+    (tmp_path / "cart").mkdir()
+    (tmp_path / "cart" / "model.sdf").write_text(CAR.format(""), encoding="utf-8")
+    world = (f'<sdf version="1.9"><world name="w">{GROUND.format("true")}<include><uri>model://cart</uri>'
+             "<name>mine</name></include></world></sdf>")
+    found, scene = imported(tmp_path, world, "world.sdf")
+    assert found.name == "mine" and len(scene.vehicle["wheel"]) == 2
+
+
+def test_an_include_outside_the_robots_folder_or_without_end_is_not_opened(tmp_path: Path) -> None:
+    inside = tmp_path / "robot"
+    inside.mkdir()
+    (tmp_path / "laser.sdf").write_text(LASER, encoding="utf-8")
+    found, scene = imported(inside, CAR.format(JOINED.format("../laser.sdf")), "car.sdf")
+    assert "<include> laser is not read; its mass is not counted" in found.remarks
+    assert scene.vehicle["mass_kg"] == pytest.approx(6.0)
+    itself = CAR.format("<include><name>again</name><uri>car.sdf</uri></include>")
+    with pytest.raises(BadInput, match="includes models that include models"):
+        imported(inside, itself, "car.sdf")

@@ -192,7 +192,7 @@ def test_a_line_of_a_trc_log_that_cannot_be_understood_is_named(line, words, tmp
     assert "line 3: " in error and words in error
 
 
-@pytest.mark.parametrize("name", ["run.mf4", "run.db", "run.csv", "run.dat", "run.txt"])
+@pytest.mark.parametrize("name", ["run.db", "run.csv", "run.dat", "run.txt"])
 def test_a_log_of_another_kind_that_cannot_be_read_is_one_line(name, tmp_path, capsys):
     log = tmp_path / name
     log.write_text("what is this\n" * 50)

@@ -91,6 +91,13 @@ def viewed(link: Link, scene: Scene, id_base: int, mode: str, recorded: Recorded
         yield
 
 
+def check_rigid(scene: Scene, recorded: Recorded) -> None:
+    """BadInput for bodies on hinges: frames and played vehicles do not say where they are."""
+    if scene.has_hinges and recorded:
+        raise BadInput(f"{scene.path}: {recorded.first.partition(' ')[0]} does not take vehicles with hinges yet on a "
+                       "bus; leave it out")
+
+
 class PlayViews:
     """Looks at a played vehicle at even instants; called in the loop."""
 
@@ -116,6 +123,7 @@ def played_views(vehicle: Any, scene: Scene, recorded: Recorded) -> Iterator[lis
     if not recorded:
         yield []
         return
+    check_rigid(scene, recorded)
     if (look := getattr(vehicle, "signals", None)) is None:
         raise BadInput(f"{recorded.first}: needs a vehicle in this process, whose motion can be seen; leave --board "
                        "out")

@@ -21,7 +21,7 @@ OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 
 @click.command("replay")
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
-@click.argument("scene", type=SceneName())
+@click.argument("scene", type=SceneName(hinges=True))
 @click.option("--inputs", type=click.Choice(INPUTS),
               help="The columns of the log that drive the model. Default: voltages if its columns are signals, in one "
               "file or many; currents if the log has them and the ground no friction; else the wheels' speeds.")
@@ -86,7 +86,11 @@ def _by_signals(log: Path, scene: str) -> Found:
     from laconic.robot.replay.signals import read_signal_log, replay_signals
     from laconic.scene import read_scene
 
-    found = replay_signals(read_scene(scene), read_signal_log(log))
+    given = read_scene(scene)
+    if given.has_hinges:
+        raise BadInput(f"{given.path}: a file of signals does not drive vehicles with hinges yet; give a --map with "
+                       "[steering_angle] and [wheel_angle]")
+    found = replay_signals(given, read_signal_log(log))
     return report.as_text(found), report.as_numbers(found), partial(report.draw, found)
 
 
@@ -101,11 +105,15 @@ def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tup
     if inputs is None and not fit_on and _are_signals_with_voltages(logs):
         inputs = "voltages"
     _check_inputs(logs, inputs)
+    if given.has_hinges and (fit_on or inputs not in (None, "wheel-speeds")):
+        raise BadInput(f"{given.path}: a vehicle with hinges is rolled by its steering angles; leave "
+                       f"{'--fit' if fit_on else f'--inputs {inputs}'} out")
     has_currents = logs[0].current_A is not None
     if fit_on and slips(given.vehicle):
         raise BadInput(f"--fit: {given.path} has a [ground] with friction already; leave --fit out, or let "
                        "`laconic identify` find its numbers")
-    if not slips(given.vehicle) and (inputs == "currents" or fit_on or (inputs is None and has_currents)):
+    is_rolled = slips(given.vehicle) or given.has_hinges
+    if not is_rolled and (inputs == "currents" or fit_on or (inputs is None and has_currents)):
         return _by_currents(given, logs, names, skipped)
     from laconic.robot.replay import rolled_paths
 

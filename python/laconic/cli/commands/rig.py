@@ -91,6 +91,7 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
 
 def drive(scene: Scene, options: Options) -> int:
     """A run or a replay, and its results in every form that the options choose."""
+    from laconic.can.rig.bagged import check_rigid
     from laconic.can.rig.errors import Interrupted
     from laconic.can.rig.options import read_id_base
     from laconic.can.rig.replay import judge_log
@@ -98,8 +99,7 @@ def drive(scene: Scene, options: Options) -> int:
     from laconic.can.rig.run import run
     from laconic.can.rig.scaled import read_tolerances
 
-    if scene.has_hinges and options.bag:
-        raise BadInput(f"{scene.path}: --bag does not take vehicles with hinges yet; leave it out")
+    check_rigid(scene, options.recorded)
     began = time.perf_counter()
     if options.replay is not None:
         goes_with("--replay", "--lockstep", "--channel", "--id-base", "--method", "--real", "--tolerance", "--junit",

@@ -248,11 +248,13 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        self.joints = [*usual_joints(scene.wheel_count), *(f"{hinge.name}_joint" for hinge in scene.hinges)]
+        names = scene.base.joint_names if scene.base else ()
+        self.joints = [*(names or usual_joints(scene.wheel_count)), *(f"{hinge.name}_joint" for hinge in scene.hinges)]
         core, carriage = scene.core(), carriage_of(scene)
         self._centre = centre_of_mass(core, core.vehicle(carriage))
         self._rolling = _rolling(scene, carriage)
         self._on_carriage = [at for at, wheel in enumerate(scene.vehicle["wheel"]) if is_of_carriage(wheel)]
+        self._has_begun = False
         self._angles: np.ndarray | None = None
         self._odom: np.ndarray | None = None
         self._before_s = 0.0
@@ -268,6 +270,8 @@ class RunTopics:
         """One instant; what of the signals is not there leaves out its topic."""
         stamp_ns = round(time_s * 1e9)
         stamp = self.types["builtin_interfaces/msg/Time"](stamp_ns // 10**9, stamp_ns % 10**9)
+        if not self._has_begun:
+            self._fixed_frames(stamp_ns, stamp)
         if "x_m" in signals:
             self._ground_truth(stamp_ns, stamp, signals)
         angles = self._of_wheels(signals, "wheel_angle_rad")
@@ -291,6 +295,15 @@ class RunTopics:
     def _of_wheels(self, signals: Mapping[str, float], name: str) -> np.ndarray | None:
         values = [signals.get(f"{name}[{number}]") for number in range(1, self.scene.wheel_count + 1)]
         return np.array(values, float) if values and None not in values else None
+
+    def _fixed_frames(self, stamp_ns: int, stamp: Any) -> None:
+        """Where the IMU is on the robot."""
+        self._has_begun = True
+        table = self.scene.sensors.imu or {}
+        place = self.types["geometry_msgs/msg/Vector3"](table.get("x_m", 0.0), table.get("y_m", 0.0), 0.0)
+        self.bag.write("/tf_static", TRANSFORMS, stamp_ns, self.types[TRANSFORMS]([
+            self.types["geometry_msgs/msg/TransformStamped"](self._header(stamp, BASE), IMU, self.types[
+                "geometry_msgs/msg/Transform"](place, self._quaternion(table.get("heading_rad", 0.0))))]))
 
     def _of_hinges(self, signals: Mapping[str, float], name: str) -> list[float]:
         return [signals.get(f"{name}[{hinge.name}]", math.nan) for hinge in self.scene.hinges]

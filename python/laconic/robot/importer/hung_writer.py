@@ -13,7 +13,7 @@ from laconic.robot.importer.dropped import idle_of
 from laconic.robot.importer.hung import ahead_of, hung_of, links_of_carriage
 from laconic.robot.importer.hung_push import SHORTEST_S, STEP_S, Plan, drive, shortened
 from laconic.robot.importer.hung_scene import HungTables, rigid_table
-from laconic.robot.importer.imported_scene import Imported, Writer, _rounded
+from laconic.robot.importer.imported_scene import Imported, Writer, _rounded, in_one_line
 from laconic.robot.importer.rigid_body import add_up
 from laconic.robot.importer.rollers import Kind
 from laconic.robot.importer.supports import find_supports
@@ -56,6 +56,7 @@ class HungWriter(Writer):
             self.remarks.append("--friction: wheels on hinges do not slip; the run has the margin to slip instead")
         self.remark_friction()
         scene = self.checked(data | {"run": {"duration_s": SHORTEST_S, "step_s": STEP_S}})
+        self.name_joints(data, scene)
         standing = self.standing(scene)
         if standing.tips:
             self.remarks.append(f"the robot: {standing.tips}")
@@ -74,6 +75,16 @@ class HungWriter(Writer):
         self.promise = driven.promise
         self.judge(self.checked(data))
         return self.written(data, standing, self.tables.words())
+
+    def name_joints(self, data: dict[str, Any], scene: Scene) -> None:
+        """`[base] joint_names`: wheels, and hinges too where each has sense and zero of its joint."""
+        names = [in_one_line(each.wheel.name) for each in self.placed]
+        bodies = [self.tables.by_name[hinge.name] for hinge in scene.hinges]
+        if all(body.sense > 0.0 and abs(body.zero_rad) < 1e-9 for body in bodies):
+            names += [in_one_line(body.joint.name) for body in bodies]
+        if all(names) and len(set(names)) == len(names):
+            data["base"] = {"joint_names": names}
+            self.comments["base", "joint_names"] = "for laconic ros2"
 
     def motors(self) -> list[str]:
         """The driven wheels, on hinges too."""

@@ -47,13 +47,13 @@ class MeshFiles:
         if uri not in self.read:
             path = self.find(uri) if uri else None
             found = "names no file" if not uri else "not found" if path is None else (
-                what_is_no_file(path) or self._outside(path) or self._points_of(path))
+                what_is_no_file(path) or self.outside(path) or self._points_of(path))
             if isinstance(found, str):
                 self.missing[uri] = found
             self.read[uri] = None if isinstance(found, str) else found
         return self.read[uri]
 
-    def _outside(self, path: Path) -> str:
+    def outside(self, path: Path) -> str:
         """What a file is that neither the robot's folder nor a package has; empty for others. It is not opened."""
         inside = [*own_folders(self.robot), *self.packages.values(), *self.found.values()]
         if is_inside(path, inside):

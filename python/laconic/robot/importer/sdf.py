@@ -50,7 +50,7 @@ from laconic.robot.importer.robot_tree import (
     check_count,
     mimics,
 )
-from laconic.robot.importer.sdf_nested import flatten
+from laconic.robot.importer.sdf_nested import OLD_AXES, flatten, take_includes
 from laconic.robot.importer.sdf_tree import tree_of
 from laconic.robot.importer.surfaces import surface_of
 from laconic.robot.importer.xml_file import Element, bytes_of, root_of
@@ -66,7 +66,6 @@ NO_LIMIT = 1e15  # what the format has for one that is not given is larger
 GEARBOX = "gearbox"
 TWO_AXES = ("universal", "revolute2")
 FIRST, SECOND = "axis", "axis2"
-OLD_AXES = ("1.0", "1.1", "1.2", "1.3", "1.4")  # versions in which axes are in the frame of the model
 VERSIONS = [f"1.{minor}" for minor in range(13)]
 
 
@@ -75,8 +74,13 @@ def read_sdf(path: Path, packages: Mapping[str, Path], model_name: str | None) -
     text = bytes_of(path)
     check_count(path, text.count(b"<link"))
     root = root_of(path, text, "is no XML")
-    model, remarks = _model(path, root, model_name)
     with MeshFiles(path, packages) as files:
+        for each in root.findall("model") + root.findall("world/model"):
+            take_includes(path, each, files)
+        if not any(_robots(_outer_models(root))) or model_name not in (None, *_names_of(root)):
+            for each in (root, *root.findall("world")):
+                take_includes(path, each, files)
+        model, remarks = _model(path, root, model_name)
         made = _Model(path, model, files, gravity_of(path, root, model), remarks)
         made.has_old_axes = root.get("version", VERSIONS[-1]) in OLD_AXES
         return made.robot()
@@ -106,6 +110,10 @@ def _model(path: Path, root: Element, name: str | None) -> tuple[Element, list[s
     others = [str(each.get("name")) for each in every if each is not models[0]]
     return models[0], [f"of the models in the file {models[0].get('name')} is the robot; left out are "
                        f"{listed(others)}"] if others else []
+
+
+def _names_of(root: Element) -> list[str | None]:
+    return [each.get("name") for each in _outer_models(root)]
 
 
 def _outer_models(root: Element) -> list[Element]:

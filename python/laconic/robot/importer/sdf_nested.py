@@ -11,15 +11,68 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from laconic.errors import BadInput
-from laconic.robot.importer.xml_file import Element
+from laconic.robot.importer.meshes import MeshFiles
+from laconic.robot.importer.xml_file import Element, bytes_of, root_of
 
 OWN = "__model__"
+BETWEEN_SCHEME = "://"
+OLD_AXES = ("1.0", "1.1", "1.2", "1.3", "1.4")  # versions in which axes are in the frame of the model
 DEEPEST = 20  # models inside models
 BETWEEN = "::"
 OUTSIDE = ("world", "__root__")
 PARTS = ("link", "joint", "frame")
 ENDS = ("parent", "child", "gearbox_reference_body")
 REFERENCES = ("relative_to", "attached_to", "expressed_in")
+
+
+def take_includes(path: Path, element: Element, files: MeshFiles, depth: int = 1) -> None:
+    """Puts the models of files that are near in the place of their <include>, at any depth; others stay."""
+    for at, child in enumerate(list(element)):
+        if child.tag == "include" and (model := _included(child, files)) is not None:
+            if depth > DEEPEST:
+                raise BadInput(f"{path}: includes models that include models, {depth} deep; more than {DEEPEST} are "
+                               "not read")
+            element[at] = child = model
+        if child.tag == "model" and depth <= DEEPEST:
+            take_includes(path, child, files, depth + 1)
+
+
+def _included(include: Element, files: MeshFiles) -> Element | None:
+    """The model of a file, with the name and pose that it is included with; None where it cannot be had."""
+    file = _file_of((include.findtext("uri") or "").strip(), files)
+    if file is None or include.find("placement_frame") is not None or include.get("merge") in ("1", "true"):
+        return None
+    root = root_of(file, bytes_of(file), "is no XML")
+    model = root.find("model")
+    if root.tag != "sdf" or model is None or (root.get("version", "1.9") in OLD_AXES and model.find(".//joint/axis")
+                                              is not None):
+        return None
+    for each in (*model.iter("uri"), *model.iter("filename")):
+        text = (each.text or "").strip()
+        if text and BETWEEN_SCHEME not in text and not Path(text).is_absolute():
+            each.text = str(file.parent.resolve() / text)
+    for tag in ("pose", "static"):
+        if (given := include.find(tag)) is not None:
+            for own in model.findall(tag):
+                model.remove(own)
+            model.append(given)
+    if name := (include.findtext("name") or "").strip():
+        model.set("name", name)
+    return model
+
+
+def _file_of(uri: str, files: MeshFiles) -> Path | None:
+    """The SDF file of an include: itself, or that which the folder of a Gazebo model names."""
+    found = files.find(uri) if uri else None
+    if found is not None and found.is_dir():
+        config = found / "model.config"
+        named = [(each.text or "").strip() for each in root_of(config, bytes_of(config), "is no XML").iter("sdf")
+                 ] if config.is_file() and not files.outside(config) else []
+        there = [found / name for name in (*named[::-1], "model.sdf") if name and (found / name).is_file()]
+        found = next(iter(there), None)
+    if found is None or found.suffix.lower() not in (".sdf", ".world") or files.outside(found):
+        return None
+    return found
 
 
 def flatten(path: Path, model: Element, depth: int = 1) -> None:

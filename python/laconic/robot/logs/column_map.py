@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput, shown
-from laconic.robot.logs.log import PER_WHEEL
+from laconic.robot.logs.log import PER_WHEEL, STEERING
 from laconic.robot.logs.quantity import (
     YAW_RATE,
     Quantity,
@@ -29,7 +29,7 @@ KEYS = {"separator": "text", "header_lines": "text", "names_line": "text", "deci
         "dbc": "can", "group": "can", "channel": "can", "joints": "bag", "imu": "bag", "stamps": "bag"}
 """Keys that one format alone reads."""
 STAMPS = ("header", "arrival")
-QUANTITIES = (*PER_WHEEL, "pose", YAW_RATE)
+QUANTITIES = (*PER_WHEEL, STEERING, "pose", YAW_RATE)
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,8 @@ def map_of(table: Table) -> ColumnMap:
     for each in QUANTITIES:
         if table.has(each) and each not in quantities:
             inner = table.table(each)
-            found = yaw_rate_of(inner, form) if each == YAW_RATE else quantity_of(inner, each, count, form)
+            found = yaw_rate_of(inner, form) if each == YAW_RATE else quantity_of(
+                inner, each, None if each == STEERING else count, form)
             quantities[each] = found
             if each in PER_WHEEL and not found.first and not is_numbered(found.columns):
                 count = count or len(found.members or found.columns)

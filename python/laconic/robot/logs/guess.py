@@ -61,7 +61,8 @@ def guess_table(columns: Mapping[str, np.ndarray], texts: Mapping[str, str]) -> 
     left = {name: values for name, values in left.items() if name not in found.meaning}
     _wheels(found, left)
     if steered := [name for name in left if STEERED & set(words_of(name))]:
-        found.notes.append(f"{', '.join(steered[:4])}: angles of steering are not read")
+        found.notes.append(f"{', '.join(steered[:4])}: may be angles of steering; name them under "
+                           "[steering_angle], for a scene with steered wheels")
     return found
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from laconic.errors import BadInput
 
 PER_WHEEL = ("set_speed", "wheel_angle", "wheel_speed", "current", "voltage")
+STEERING = "steering_angle"
 POINTS = ("origin", "centre_of_mass")
 Point = str | tuple[float, float]
 """One of POINTS, or x, y [m] in the body's frame."""
@@ -44,6 +45,8 @@ class Log:
     pose: np.ndarray | None = None          # true x, y [m], heading [rad, unwrapped, NaN: not recorded] in the world
     pose_point: Point = "origin"            # which point of the vehicle the pose is of
     yaw_rate_rad_per_s: np.ndarray | None = None  # of a gyro
+    steering_angle_rad: np.ndarray | None = None  # of hinges, a column each
+    hinge_names: tuple[str, ...] = ()       # of these columns; empty: the scene's steered hinges in their order
     is_ordered: bool = False                # the map says which wheel of the scene each column is of
     moved: np.ndarray | None = None         # the displacements that the log has instead of a pose, summed: x, y, angle
     names: dict[str, str] = field(default_factory=dict)  # quantity → how the log calls its columns, for messages

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from laconic.errors import nearest_of, shown
-from laconic.robot.logs.log import POINTS
+from laconic.robot.logs.log import POINTS, STEERING
 from laconic.robot.logs.units import (
     ANGLE,
     ISO,
@@ -24,6 +24,7 @@ from laconic.robot.logs.units import (
 from laconic.scene.table import Table
 
 YAW_RATE = "yaw_rate"
+OF_ANGLE = ("wheel_angle", STEERING)
 NUMBERED = "#"  # in a column's name: one column for each wheel, counted from 1
 
 Column = str | int
@@ -59,6 +60,7 @@ class Quantity:
     time: str = ""                     # column of its own instants; empty: those of the log
     topic: str = ""                    # of messages whose type says which fields are meant
     frames: tuple[str, ...] = ()       # parent and child: the pose of the one in the other, of /tf
+    hinges: tuple[str, ...] = ()       # of the scene, whose angle each column is; empty: in the scene's order
 
     def channel_of(self, index: int, usual: str) -> str:
         """The channel of a column; empty: the only one of the log."""
@@ -79,7 +81,7 @@ def wheel_unit(quantity: Quantity, figure: Any) -> float:
     elif needs_ticks(unit):
         one = ANGLE["turn"] / figure(quantity.ticks_per_turn) * TICK_SPEED.get(unit, 1.0)
     else:
-        one = (ANGLE if quantity.name == "wheel_angle" else SPEED)[unit]
+        one = (ANGLE if quantity.name in OF_ANGLE else SPEED)[unit]
     return one / figure(quantity.gear_ratio)
 
 
@@ -286,12 +288,21 @@ def quantity_of(table: Table, name: str, count: int | None, form: str) -> Quanti
         1.0 if gear is None else gear, _wheels(table, len(members) or length), first, table.flag("optional", False),
         table.flag("sign_from_set_speed", False) if name == "current" else False,
         table.choice("point", POINTS, "origin") if name == "pose" else "origin",
-        _wrap(table, (bool, int, float)) if name == "wheel_angle" else None, channels, members,
+        _wrap(table, (bool, int, float)) if name in OF_ANGLE else None, channels, members,
         _radius(table, name, units), quaternion, *(_mounting(table, kind) if name == "pose" else (None, 0.0)),
         table.text("rows", ""), table.text("time", "") if form == "mat" else "",
         *_topic(table, name, form))
+    if name == STEERING:
+        found = replace(found, hinges=_hinges(table, len(members) or length))
     table.done()
     return found
+
+
+def _hinges(table: Table, length: int | None) -> tuple[str, ...]:
+    names = tuple(table.texts("hinges", ()))
+    if names and (len(set(names)) < len(names) or (length is not None and len(names) != length)):
+        table.fail("hinges", f"is {shown(list(names))}; give the name of another hinge of the scene for each column")
+    return names
 
 
 def _wheels(table: Table, length: int | None) -> tuple[int, ...]:

@@ -13,8 +13,8 @@ from laconic.errors import BadInput
 from laconic.robot.logs import poses
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.for_vehicle import spread
-from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, Counter, Log
-from laconic.robot.logs.quantity import YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
+from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, STEERING, Counter, Log
+from laconic.robot.logs.quantity import OF_ANGLE, YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
 from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
 from laconic.robot.logs.text_table import metadata_number, metadata_of
@@ -27,7 +27,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     """A recorded run; BadInput names the file, line and column that cannot be used."""
     source = source_of(path, columns)
     reader = _Reader(source, columns)
-    wheels = [reader.at_wheel(columns.quantities[name]) for name in PER_WHEEL if name in columns.quantities]
+    wheels = [reader.at_wheel(columns.quantities[name]) for name in (*PER_WHEEL, STEERING)
+              if name in columns.quantities]
     others = [reader.yaw_rate(columns.quantities.get(YAW_RATE)), reader.pose(columns.quantities.get("pose"))]
     sampled = [each for each in (*wheels, *others) if each is not None]
     chosen = choose(source.time_s, sampled, source.is_row, source.hold_s, source.lines,
@@ -43,6 +44,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
         found["current_A"] = _signed(path, found)
     if YAW_RATE in chosen.values:
         found["yaw_rate_rad_per_s"] = chosen.values[YAW_RATE][:, 0]
+    if STEERING in chosen.values:
+        found |= {"steering_angle_rad": chosen.values[STEERING], "hinge_names": columns.quantities[STEERING].hinges}
     remarks = (*source.remarks, *reader.remarks, *chosen.remarks)
     is_ordered = any(quantity.wheels for quantity in columns.quantities.values())
     by_radius = tuple(member for name, member in MEMBERS.items()
@@ -103,9 +106,9 @@ class _Reader:
             return None
         values, labels = found
         unit = quantity.units[0]
-        if quantity.name == "wheel_angle":
+        if quantity.name in OF_ANGLE:
             values = self._continuous(quantity, values, labels)
-        is_turning = quantity.name in OF_WHEEL
+        is_turning = quantity.name in OF_WHEEL or quantity.name in OF_ANGLE
         factor = wheel_unit(quantity, self._figure) if is_turning else OF_QUANTITY[quantity.name][0][unit]
         with np.errstate(over="ignore"):
             out = values * (np.array(quantity.scales) * factor) + np.array(quantity.offsets)
@@ -124,8 +127,9 @@ class _Reader:
             name, place = f"{quantity.name} {label}", partial(_place_of, self.source, rows)
             modulus = modulus_of(quantity.wrap, turn, scales[index])
             said = "" if modulus is None else said_of(quantity.wrap, modulus)
-            self.wraps.append(np.nan if modulus is None else modulus * abs(scales[index]))
-            self.said = said or self.said
+            if quantity.name != STEERING:
+                self.wraps.append(np.nan if modulus is None else modulus * abs(scales[index]))
+                self.said = said or self.said
             if modulus is not None and is_difference:
                 found[rows, index] = folded(values[rows, index], modulus)
                 doubt = doubt_of(name, found[rows[1:], index], modulus, place, said)  # the first has none before it
@@ -133,6 +137,8 @@ class _Reader:
             elif modulus is not None:
                 found[rows, index], doubt = continuous(self.source.path, name, column, modulus, unit, place, said)
                 self.remarks += [doubt] if doubt else []
+                if quantity.name == STEERING:  # an absolute encoder above half its range stands on the other side
+                    found[rows, index] -= modulus * np.round(found[rows[0], index] / modulus)
             elif quantity.wrap is None:
                 refuse_jumps(self.source.path, name, column, turn / abs(scales[index]), place)
         return found

@@ -21,7 +21,8 @@ OF_WHEEL = ("wheel_angle", "wheel_speed", "set_speed")
 
 OF_QUANTITY = {
     "time": (TIME,), "set_speed": (SPEED,), "wheel_angle": (ANGLE,), "wheel_speed": (SPEED,), "current": (CURRENT,),
-    "voltage": (VOLTAGE,), "yaw_rate": (SPEED,), "pose": (LENGTH, LENGTH, ANGLE)}
+    "voltage": (VOLTAGE,), "yaw_rate": (SPEED,), "steering_angle": (ANGLE,),
+    "pose": (LENGTH, LENGTH, ANGLE)}
 """The units of each quantity; of a pose one for each of x, y and heading."""
 
 
@@ -34,6 +35,8 @@ def further_units(name: str) -> set[str]:
     """Units that need a number of the map: ticks, and lengths by the wheel's radius."""
     if name == "wheel_angle":
         return {TICK, *LENGTH}
+    if name == "steering_angle":
+        return {TICK}
     return {*TICK_SPEED, *PATH_SPEED} if name in OF_WHEEL else set()
 
 

@@ -17,6 +17,7 @@ from laconic.robot.replay.held_wheels import hold, placed_at
 from laconic.robot.replay.measures import RunErrors, path_errors
 from laconic.robot.replay.placing import fitted_to, start_of
 from laconic.robot.replay.rolling import rolling_of
+from laconic.robot.replay.steered_rolling import SteeredRolling
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
@@ -37,6 +38,8 @@ def predict(scene: Scene, logs: Sequence[Log], inputs: str) -> list[Prediction]:
 
 
 def _predictor(scene: Scene, inputs: str) -> Callable[[str, Log], Prediction]:
+    if scene.has_hinges:
+        return _steered(scene, inputs)
     core = scene.core()
     if inputs == "wheel-speeds" and not slips(scene.vehicle):
         rolling = rolling_of(core, scene.vehicle, scene.path)
@@ -52,6 +55,14 @@ def _predictor(scene: Scene, inputs: str) -> Callable[[str, Log], Prediction]:
         assert controller is not None
         return lambda name, log: _followed(name, log, closed_loop.follow(core, scene.vehicle, controller, log))
     return lambda name, log: _followed(name, log, drive(core, scene.vehicle, log), inputs == "currents")
+
+
+def _steered(scene: Scene, inputs: str) -> Callable[[str, Log], Prediction]:
+    if inputs != "wheel-speeds":
+        raise BadInput(f"{scene.path}: --inputs {inputs} does not take vehicles with hinges yet; take --inputs "
+                       "wheel-speeds, with [steering_angle] in the map")
+    rolling = SteeredRolling(scene)
+    return lambda name, log: _with_path(name, log, rolling.path(log))
 
 
 def _with_path(name: str, log: Log, path: np.ndarray) -> Prediction:

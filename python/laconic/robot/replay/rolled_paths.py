@@ -21,6 +21,7 @@ from laconic.scene.ground import slips
 MOST_PANELS = 12
 SAID = {
     "wheel-speeds": "the recorded rotation of the wheels, rolled without slip",
+    "steered": "the recorded rotation of the wheels at the recorded steering angles, rolled without slip",
     "held": "the recorded rotation of the wheels, held by strong motors on ground with friction",
     "currents": "the recorded currents, as torques",
     "voltages": "the recorded voltages",
@@ -76,6 +77,8 @@ def remark_lines(logs: Sequence[Log]) -> list[str]:
 def _said(found: RolledPaths) -> str:
     if found.inputs != "wheel-speeds":
         return SAID[found.inputs]
+    if found.scene.has_hinges:
+        return SAID["steered"]
     return SAID["held"] if slips(found.scene.vehicle) else SAID["wheel-speeds"]
 
 
@@ -129,7 +132,7 @@ def draw(found: RolledPaths, folder: Path) -> list[Path]:
     panels[0].set(xlabel="x [m]", ylabel="y [m]")
     picture.legend(handles=panels[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
     save(picture, folder / "paths.png")
-    if slips(found.scene.vehicle):
+    if slips(found.scene.vehicle) and not found.scene.has_hinges:
         from laconic.robot.replay.picture_of_drag import draw_drag
 
         return [folder / "paths.png", draw_drag(found.scene, found.logs, folder)]
