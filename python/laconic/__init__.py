@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.base.paths import scene_names as scene_names
+    from laconic.batch import ArticulatedBatch as ArticulatedBatch
     from laconic.batch import Batch as Batch
     from laconic.core import Core as Core
     from laconic.core import Linearisation as Linearisation
@@ -52,17 +53,17 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.tools.analyse.findings import Study as Study
     from laconic.tools.control.filter import Filter as Filter
 
-__all__ = ["METHODS", "ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions", "ArticulatedVehicle", "BadInput",
-           "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation", "Matrices", "Plant", "Pose", "Rates",
-           "Readings", "Refused", "RunRefused", "Scene", "Sensors", "SlippingOutputs",
-           "SlippingPlant", "SlippingVehicle", "StepDerivatives", "StepJacobian", "Study",
+__all__ = ["METHODS", "ArticulatedBatch", "ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions",
+           "ArticulatedVehicle", "BadInput", "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation",
+           "Matrices", "Plant", "Pose", "Rates", "Readings", "Refused", "RunRefused", "Scene", "Sensors",
+           "SlippingOutputs", "SlippingPlant", "SlippingVehicle", "StepDerivatives", "StepJacobian", "Study",
            "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
            "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", **dict.fromkeys(("ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions",
                                          "ArticulatedVehicle"), "core.articulated"),
-    "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
+    "ArticulatedBatch": "batch", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
     "Errors": "core.estimate", "Estimate": "core.estimate", "Filter": "tools.control.filter", "Matrices": "core",
     "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",

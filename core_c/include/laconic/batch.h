@@ -20,6 +20,7 @@
 #ifndef LACONIC_BATCH_H
 #define LACONIC_BATCH_H
 
+#include "laconic/articulated.h"
 #include "laconic/laconic.h"
 
 #ifdef __cplusplus
@@ -147,6 +148,40 @@ int32_t laconic_batch_contacts_of(laconic_contact *contacts, int32_t *status, co
  * or one for each of these lanes; then also the reactions. */
 void laconic_batch_outputs(const laconic_batch *batch, int32_t first_lane, int32_t lanes,
                            const laconic_contact *contacts, laconic_outputs *outputs);
+
+/* ------------------------------------------------------------------------ vehicles with hinges -- */
+
+#if LACONIC_MAX_BODIES > 0
+
+/* A prepared vehicle with hinges; lanes may share it. The model is the caller's. */
+typedef struct laconic_articulated_kind {
+    const laconic_articulated_model *model;
+    laconic_articulated_integrator integrator;
+} laconic_articulated_kind;
+
+/* The caller fills it with arrays of its own, one item for each lane. States are set by
+ * laconic_articulated_state_set(). */
+typedef struct laconic_articulated_batch {
+    const laconic_articulated_kind *kinds;
+    const int32_t *kind_of; /* of each lane, from 0                       */
+    laconic_articulated_state *states;
+    const laconic_articulated_input *inputs;
+    laconic_refusal *why; /* of a refused lane                          */
+    int32_t *status;      /* of the last run; a laconic_status          */
+    uint64_t *missed;     /* steps that a lane did not take, counted on */
+} laconic_articulated_batch;
+
+/* Takes `steps` steps of some lanes with the inputs held, each by laconic_articulated_step(), so with its bits and its
+ * cost. A lane stops before the first step that is refused, and the others continue. Returns how many lanes were
+ * refused. Runs of different lanes may take place at the same time. */
+int32_t laconic_articulated_batch_run(laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
+                                      uint64_t steps);
+
+/* Motions of some lanes, as laconic_articulated_motion_of() gives them. */
+void laconic_articulated_batch_observe(const laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
+                                       laconic_articulated_motion *motions);
+
+#endif
 
 #ifdef __cplusplus
 }

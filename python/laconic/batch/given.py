@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from laconic.core import Core, Vehicle
+from laconic.core.articulated import ArticulatedVehicle
 from laconic.core.given import shown, whole_number
 from laconic.core.given_array import any_array
 from laconic.errors import BadInput
@@ -16,7 +17,7 @@ MOST_LANES = 2**28
 
 def kinds_of(vehicles: Any) -> list[Any]:
     """One vehicle or several, as a list."""
-    if isinstance(vehicles, Vehicle):
+    if isinstance(vehicles, Vehicle | ArticulatedVehicle):
         return [vehicles]
     try:
         return list(vehicles)
@@ -24,13 +25,15 @@ def kinds_of(vehicles: Any) -> list[Any]:
         raise BadInput(f"vehicles: {shown(vehicles)} is no laconic.Vehicle and no list of them; give one") from None
 
 
-def core_of(vehicles: list[Any]) -> Core:
-    """That of all vehicles."""
+def core_of(vehicles: list[Any], kind: Any = Vehicle, other: str = "ArticulatedBatch") -> Core:
+    """That of all vehicles, which are of one kind; `other` is the batch for those of the other kind."""
     if not vehicles:
         raise BadInput("vehicles: none is given; give at least one")
     for item, vehicle in enumerate(vehicles, start=1):
-        if not isinstance(vehicle, Vehicle):
-            raise BadInput(f"vehicles[{item}]: {shown(vehicle)} is no laconic.Vehicle; give one")
+        if not isinstance(vehicle, kind) and isinstance(vehicle, Vehicle | ArticulatedVehicle):
+            raise BadInput(f"vehicles[{item}]: is a laconic.{type(vehicle).__name__}; step it in a laconic.{other}")
+        if not isinstance(vehicle, kind):
+            raise BadInput(f"vehicles[{item}]: {shown(vehicle)} is no laconic.{kind.__name__}; give one")
         if vehicle.core is not vehicles[0].core:
             raise BadInput(f"vehicles[{item}]: is of {vehicle.core.real} precision, the first of "
                            f"{vehicles[0].core.real}; give vehicles of one")
