@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from laconic.can.rig.boards import own_node
-from laconic.can.rig.choices import LOGS
+from laconic.can.rig.choices import LOGS as KNOWN
 from laconic.can.rig.free_judge import judge_free_run
 from laconic.can.rig.live import View
 from laconic.can.rig.logs import read_log
@@ -22,6 +22,7 @@ from laconic.cli.main import run
 from laconic.scene import read_scene
 
 SEED, BROKEN = 1, 40
+LOGS = [each for each in KNOWN if each != ".mf4"]  # which needs a package that tests do not have
 OPEN, VOLTAGE = (ID_BASE + wire()[name].offset for name in ("OPEN", "VOLTAGE"))
 
 
