@@ -35,6 +35,9 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.core.plant import Pose as Pose
     from laconic.core.sensors import Readings as Readings
     from laconic.core.sensors import Sensors as Sensors
+    from laconic.core.slipping import SlippingOutputs as SlippingOutputs
+    from laconic.core.slipping import SlippingPlant as SlippingPlant
+    from laconic.core.slipping import SlippingVehicle as SlippingVehicle
     from laconic.errors import BadInput as BadInput
     from laconic.errors import Refused as Refused
     from laconic.fmu import make_fmu as make_fmu
@@ -53,8 +56,9 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
 __all__ = ["METHODS", "ArticulatedBatch", "ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions",
            "ArticulatedVehicle", "BadInput", "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation",
            "Matrices", "Plant", "Pose", "Rates", "Readings", "Refused", "RunRefused", "Scene", "Sensors",
-           "StepDerivatives", "StepJacobian", "Study", "Trajectory", "Vehicle", "analyse", "build_scene", "load_core",
-           "make_fmu", "plot", "read_scene", "scene_names", "simulate"]
+           "SlippingOutputs", "SlippingPlant", "SlippingVehicle", "StepDerivatives", "StepJacobian", "Study",
+           "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
+           "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", **dict.fromkeys(("ArticulatedMotion", "ArticulatedPlant", "ArticulatedReactions",
@@ -63,7 +67,9 @@ _MODULES = {  # name → where it is, and as what if not by the same name
     "Errors": "core.estimate", "Estimate": "core.estimate", "Filter": "tools.control.filter", "Matrices": "core",
     "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
-    "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives",
+    "Sensors": "core.sensors",
+    **dict.fromkeys(("SlippingOutputs", "SlippingPlant", "SlippingVehicle"), "core.slipping"),
+    "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives",
     "Study": "tools.analyse.findings", "Trajectory": "simulation", "Vehicle": "core",
     "analyse": "tools.analyse.analyse", "build_scene": "scene", "load_core": "core:load", "make_fmu": "fmu",
     "plot": "pictures.plotting", "read_scene": "scene", "scene_names": "base.paths", "simulate": "simulation"}

@@ -22,7 +22,7 @@ from laconic.core.articulated_input import input_slots, row_length, row_of_hinge
 from laconic.core.binding import Core, load
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, flag, number, shown, step_count
-from laconic.errors import BadInput
+from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
     from laconic.scene import Scene
@@ -160,6 +160,8 @@ class SlippingVehicle(ArticulatedVehicle):
         name, bracket, inside = str(signal).partition("[")
         if name != TARGET:
             return input_slots(self.core, self.names, signal)
+        if bracket and inside.removesuffix("]") not in self.names:
+            raise BadInput(f"{signal}: there is no such hinge; {nearest_of(inside.removesuffix(']'), self.names)}")
         rates = input_slots(self.core, self.names, f"steering_rate_rad_per_s{bracket}{inside}")
         shift = row_length(self.core) - input_slots(self.core, self.names, "steering_rate_rad_per_s").start
         return range(rates.start + shift, rates.stop + shift)

@@ -103,6 +103,41 @@ def draw_vehicle(axes: Axes, scene: Scene, frames: Frames, outline: dict[str, li
                   color=WHEEL, lw=TYRE, solid_capstyle="butt", zorder=3.2)
 
 
+SLIPPING = {"slip": ("slip_across_m_per_s", "slip across [m/s]", "Slip of each wheel across its rolling direction"),
+            "loads": ("wheel_load_N", "load [N]", "Normal loads of the wheels")}
+ENERGIES = ("energy_J", "supply_energy_J", "slip_loss_J", "motor_loss_J", "axle_loss_J", "hinge_loss_J")
+
+
+def slipping_panels(run: Trajectory) -> list[str]:
+    """Panels of a run on ground with friction: those whose signals it kept."""
+    if not run.scene.slips_on_hinges:
+        return []
+    names = {signal.partition("[")[0] for signal in run.columns}
+    found = [panel for panel, (name, _, _) in SLIPPING.items() if name in names]
+    return [*found, *(["energy"] if names.issuperset(ENERGIES) else [])]
+
+
+def plot_slipping(axes: Axes, panel: str, run: Trajectory) -> None:
+    """Slip or load of each wheel, or the book of energies, over time."""
+    if panel == "energy":
+        columns, labels = np.column_stack([run.columns[name] for name in ENERGIES]), list(ENERGIES)
+        unit, title = "energy [J]", "Energy: what moves, what came from the supply, what was lost"
+    else:
+        name, unit, title = SLIPPING[panel]
+        columns = run.columns_of(name)
+        labels = [f"wheel {i}" for i in range(1, columns.shape[1] + 1)]
+    axes.set_xlabel("time [s]")
+    if columns.shape[1] > MOST_CURVES:
+        plot_rows(axes, run.time_s, columns, unit)
+        axes.set_title(title, loc="left")
+        return
+    handles = plot_curves(axes, run.time_s, columns, labels)
+    axes.set_ylabel(unit)
+    axes.margins(x=0.01)
+    keep_scale(axes)
+    head(axes, title, handles)
+
+
 def plot_hinges(axes: Axes, run: Trajectory) -> None:
     """The angle of every hinge over time."""
     angles, names = run.columns_of("hinge_angle_rad"), [hinge.name for hinge in run.scene.hinges]

@@ -17,7 +17,7 @@ from laconic.base.outputs import check_ending, check_file, whole_file
 from laconic.base.paths import as_path
 from laconic.core.given import shown
 from laconic.errors import BadInput
-from laconic.pictures.articulated import is_drawn, plot_hinges, plot_vehicle_path
+from laconic.pictures.articulated import is_drawn, plot_hinges, plot_slipping, plot_vehicle_path, slipping_panels
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_beside_yaw_rate, plot_curves, plot_rows
 from laconic.pictures.method_style import style_of
@@ -198,14 +198,17 @@ def run_figure(run: Trajectory) -> Figure:
     needs."""
     sensors = sensor_panels(run)
     hinges = ["hinges"] if run.scene.has_hinges else []
-    picture = figure(12.0, 7.0 + 3.5 * len(sensors) + 2.5 * len(hinges))
+    slipping = slipping_panels(run)
+    picture = figure(12.0, 7.0 + 3.5 * len(sensors) + 2.5 * (len(hinges) + len(slipping)))
     below = "wheels" if run.scene.wheel_count else "velocities"
-    rows = ["velocities", *hinges, below, *sensors]
+    rows = ["velocities", *hinges, below, *slipping, *sensors]
     panels = picture.subplot_mosaic([["path", row] for row in rows], width_ratios=(1.0, 1.25))
     title(picture, f"{run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
     plot_velocities(panels["velocities"], run)
     if run.scene.wheel_count:
         plot_wheel_speeds(panels["wheels"], run)
+    for panel in slipping:
+        plot_slipping(panels[panel], panel, run)
     for panel in sensors:
         plot_sensors(panel, panels[panel], run)
     mark_ground(panels, run)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +26,7 @@ def has_friction(vehicle: dict[str, Any]) -> bool:
     return bool(vehicle["wheel"]) and (slips(vehicle) or circuits or "drive" in vehicle)
 
 
-def slips(vehicle: dict[str, Any]) -> bool:
+def slips(vehicle: Mapping[str, Any]) -> bool:
     """Whether a wheel can slip."""
     return "friction_coefficient" in vehicle.get("ground", {})
 

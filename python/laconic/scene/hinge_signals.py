@@ -12,8 +12,9 @@ import numpy as np
 
 from laconic.core.inputs import no_such_wheel
 from laconic.errors import nearest_of, shown
+from laconic.scene.ground import slips
 from laconic.scene.hinges import Hinge
-from laconic.scene.signals import LENGTHS, PER_WHEEL
+from laconic.scene.signals import FRICTION_PER_WHEEL, LENGTHS, PER_WHEEL, SUPPORT_LOAD
 from laconic.scene.table import Table
 
 if TYPE_CHECKING:
@@ -51,6 +52,26 @@ HINGE_OUTPUTS = {
     "body_x_m": "Place of a body's hinge in the world", "body_y_m": "Place of a body's hinge in the world",
     "body_heading_rad": "Direction of a body in the world, in (−π, π]"}
 """Outputs of each hinge, with its name."""
+OF_GROUND = ("scrub_torque_Nm", "wheel_load_N")
+"""Outputs of each wheel where wheels may slip on hinges, besides those of FRICTION_PER_WHEEL."""
+SLIPPING_ALONE = {
+    "scrub_torque_Nm": ("[i]", "Torque of the ground on a wheel about the vertical"),
+    "servo_work_J": ("", "Work of servos and prescribed hinges since the start"),
+    "scrub_loss_J": ("", "Loss by scrub since the start"), "hinge_loss_J": ("", "Loss in hinges since the start"),
+    "stop_loss_J": ("", "Loss at stops since the start"),
+    "spring_energy_J": ("", "Energy in the springs of hinges")}
+"""Outputs that only vehicles have whose wheels slip on hinges."""
+SLIPPING_OUTPUTS = {
+    "hinge_friction_Nm": "Torque of dry friction on the body of a hinge", "hinge_stop_Nm": "Torque of its stops",
+    "hinge_current_A": "Current of the motor of a hinge",
+    "hinge_drive_limit": "What limits the motor of a hinge: 0 nothing, 1 the voltage, 2 the current"}
+"""Outputs of each hinge where wheels may slip."""
+NOT_SLIPPING = ("no_slip_margin_N", "acceleration_body_m_per_s2", "hinge_force_along_N", "hinge_force_across_N")
+"""Outputs of ideal ground alone."""
+BOOK = ("supply_energy_J", "outer_work_J", "servo_work_J", "slip_loss_J", "scrub_loss_J", "axle_loss_J",
+        "hinge_loss_J", "stop_loss_J", "motor_loss_J", "supply_loss_J", "numerical_loss_J", "spring_energy_J")
+"""What came and went since the start, where wheels may slip; the last is stored."""
+OF_SUPPLY = ("supply_current_A", "supply_voltage_V")
 
 
 def input_signals(vehicle: Mapping[str, Any], hinges: Sequence[Hinge]) -> dict[str, tuple[str, ...]]:
@@ -60,6 +81,12 @@ def input_signals(vehicle: Mapping[str, Any], hinges: Sequence[Hinge]) -> dict[s
     for name, kinds in ((VOLTAGE, ("motor",)), (TORQUE, ("free", "motor")), (RATE, ("prescribed",)),
                         (ANGLE, ("prescribed",))):
         found[name] = tuple(f"{name}[{hinge.name}]" for hinge in hinges if hinge.kind in kinds)
+    for hinge in hinges:
+        if hinge.follows and hinge.kind != "coordinated":
+            name = ANGLE if hinge.follows == "angle" else RATE
+            found[name] = (*found[name], f"{name}[{hinge.name}]")
+        if hinge.kind == "servo":
+            found[TORQUE] = (*found[TORQUE], f"{TORQUE}[{hinge.name}]")
     if any(hinge.kind == "coordinated" for hinge in hinges):
         found |= {TWIST: tuple(f"{TWIST}[{i}]" for i in (1, 2, 3)), CURVATURE: (CURVATURE,),
                   ANGLE: (ANGLE, *found[ANGLE])}
@@ -70,9 +97,17 @@ def output_signals_of(vehicle: Mapping[str, Any], hinges: Sequence[Hinge]) -> di
     """Every output of a vehicle with hinges."""
     found = {name: tuple(f"{name}[{i}]" for i in (1, 2)) for name in PAIRS}
     found |= {name: (name,) for name in PLAIN_OUTPUTS if name != "no_slip_margin_N" or vehicle["friction_coefficient"]}
-    found |= {name: tuple(f"{name}[{hinge.name}]" for hinge in hinges) for name in HINGE_OUTPUTS}
-    return found | {name: tuple(f"{name}[{i}]" for i in range(1, len(vehicle["wheel"]) + 1))
-                    for name in WHEEL_OUTPUTS}
+    slipping, wheels = slips(vehicle), range(1, len(vehicle["wheel"]) + 1)
+    of_hinges = (*HINGE_OUTPUTS, *(SLIPPING_OUTPUTS if slipping else ()))
+    of_wheels = (*WHEEL_OUTPUTS, *((*FRICTION_PER_WHEEL, *OF_GROUND) if slipping else ()))
+    found |= {name: tuple(f"{name}[{hinge.name}]" for hinge in hinges) for name in of_hinges}
+    found |= {name: tuple(f"{name}[{i}]" for i in wheels) for name in of_wheels}
+    if not slipping:
+        return found
+    found |= {name: (name,) for name in (*BOOK, *OF_SUPPLY)}
+    if supports := len(vehicle["support"]):
+        found[SUPPORT_LOAD] = tuple(f"{SUPPORT_LOAD}[{j}]" for j in range(1, supports + 1))
+    return {name: signals for name, signals in found.items() if name not in NOT_SLIPPING}
 
 
 def check_hinge_signal(table: Table, key: str, signal: str, known: Mapping[str, str],
@@ -125,7 +160,7 @@ def check_commands(top: Table, inputs: Sequence[Input], hinges: Sequence[Hinge])
         name, _, item = each.signal.partition("[")
         if name == ANGLE and item:
             _check_angle(top, each, inputs, next(hinge for hinge in hinges if hinge.name == item[:-1]))
-        if each.signal == ANGLE and not any(np.isfinite(hinge.rate_limit_rad_per_s) for hinge in hinges
+        if each.signal == ANGLE and not any(hinge.follows or np.isfinite(hinge.rate_limit_rad_per_s) for hinge in hinges
                                             if hinge.kind == "coordinated"):
             _fail_without_rate(top, each, next(hinge for hinge in hinges if hinge.kind == "coordinated"))
 
@@ -134,7 +169,7 @@ def _check_angle(top: Table, each: Input, inputs: Sequence[Input], hinge: Hinge)
     rate = f"{RATE}[{hinge.name}]"
     if any(other.signal == rate for other in inputs):
         top.fail(f"{each.location}.signal", f"{each.signal} is given besides {rate}; keep one of them")
-    if not np.isfinite(hinge.rate_limit_rad_per_s):
+    if not np.isfinite(hinge.rate_limit_rad_per_s) and not hinge.follows:
         _fail_without_rate(top, each, hinge)
 
 

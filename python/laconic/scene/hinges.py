@@ -17,6 +17,19 @@ from typing import TYPE_CHECKING, Any
 from laconic.base.paths import scene_names, scene_path
 from laconic.core.articulated import CARRIAGE, NAME
 from laconic.errors import BadInput, Refused, nearest_of, shown
+from laconic.scene.hinge_friction import (
+    HITCH,
+    NEEDS_GROUND,
+    OF_HINGES,
+    OF_LOOPS,
+    OF_SERVOS,
+    PERIOD,
+    loop_of,
+    of_motor,
+    read_contact,
+    read_hinge_friction,
+    stops_of,
+)
 from laconic.scene.keys import read_choice, read_number
 from laconic.scene.table import Table, read_toml
 
@@ -27,13 +40,15 @@ ROLLS_FORWARD_RAD = -math.pi / 2  # the axle of a wheel whose positive speed is 
 SHORT_FORMS = ("caster", "trailer", "body")
 STEERED_ALONE = ("name", "scrub_m", "mass_kg", "yaw_inertia_kgm2", "steering_gain_Nm_per_V", "steering_damping_Nms",
                  "stop_low_rad", "stop_low_deg", "stop_high_rad", "stop_high_deg", "start_angle_rad",
-                 "start_angle_deg", "start_rate_rad_per_s", "rate_limit_rad_per_s", "at_limit", "steering_motor")
+                 "start_angle_deg", "start_rate_rad_per_s", "rate_limit_rad_per_s", "at_limit", "steering_motor",
+                 *OF_HINGES, *OF_SERVOS, *OF_LOOPS, PERIOD)
 """Keys of a wheel that mean nothing unless it is steered."""
 WITHOUT_HINGES = ("give a rigid vehicle, with [[vehicle.support]] in the place of casters and steered wheels, as "
                   "laconic import --no-hinges writes it")
 MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio", "viscous_friction_Nms",
               "rotor_inertia_kgm2")
 COMMANDED = ("prescribed", "coordinated")
+LIMITED = (*COMMANDED, "servo")
 OF_WHOLE_HINGES = ("twist zero", "twist jumps", "massless hinge", "coordinated too few", "steered too often",
                    "coordinated on body", "step beyond trail limit")
 """Refusals that are not about the number that the core names."""
@@ -44,7 +59,7 @@ class Hinge:
     """One hinge of a scene: what the core does not know of it."""
 
     name: str
-    kind: str         # "free", "motor", "prescribed", "coordinated"
+    kind: str         # "free", "motor", "prescribed", "coordinated"; where wheels slip also "servo"
     place: str        # its table in the file: "vehicle.caster[1]"
     low_rad: float = -math.inf
     high_rad: float = math.inf
@@ -52,6 +67,7 @@ class Hinge:
     refuses: bool = False  # at a limit, instead of saturating
     start_angle_rad: float = 0.0
     start_rate_rad_per_s: float = 0.0
+    follows: str = ""  # where wheels slip: what of it a servo or loop takes a command of, "angle" or "rate"
     motor: tuple[tuple[str, float], ...] = ()  # the numbers of its motor's table, where it is given at its shaft
 
     @property
@@ -120,18 +136,19 @@ def check_without_hinges(scene: Scene, command: str) -> None:
                        f"laconic simulate, or {WITHOUT_HINGES}")
 
 
-def read_hinges(table: Table, wheels: Sequence[tuple[Table, dict[str, Any]]]) -> Hung:
-    """Every body that `[vehicle]` has; `wheels` are those of its `[[vehicle.wheel]]`."""
+def read_hinges(table: Table, wheels: Sequence[tuple[Table, dict[str, Any]]], slips: bool) -> Hung:
+    """Every body that `[vehicle]` has; `wheels` are those of its `[[vehicle.wheel]]`; `slips`: the ground has
+    friction."""
     plain, places, parts = [wheel for _, wheel in wheels], [each.location for each, _ in wheels], list[_Part]()
-    for number, each in enumerate(table.tables("body"), 1):
-        parts.append(_general(each, number))
+    for each in table.tables("body"):
+        parts.append(_general(each, slips))
     for number, (each, wheel) in enumerate(wheels, 1):
         if "steered" in wheel:
-            parts.append(_steered(each, wheel, number))
+            parts.append(_steered(each, wheel, number, slips))
     for number, each in enumerate(table.tables("caster"), 1):
-        parts.append(_caster(each, number))
+        parts.append(_caster(each, number, slips))
     for number, each in enumerate(table.tables("trailer"), 1):
-        parts.append(_trailer(each, number))
+        parts.append(_trailer(each, number, slips))
     _check_names(parts)
     parts = _parents_first(parts)
     names = [CARRIAGE, *(part.hinge.name for part in parts)]
@@ -154,49 +171,55 @@ def _number_of(place: str) -> int:
 # ------------------------------------------------------------------------------------ short forms
 
 
-def _steered(table: Table, wheel: dict[str, Any], number: int) -> _Part:
+def _steered(table: Table, wheel: dict[str, Any], number: int, slips: bool) -> _Part:
     """A steered wheel: a body with the wheel under its hinge. The wheel's place becomes that in the body's frame."""
     kind = wheel.pop("steered")
     if wheel["kind"] != "fixed":
         table.fail("kind", f"is {shown(wheel['kind'])}; a steered wheel is \"fixed\" to what turns it")
-    hinge = _hinge(table, read_name(table, f"wheel_{number}"), kind)
+    if kind == "servo" and not slips:
+        table.fail("steered", '"servo" gives way, which needs ground.friction_coefficient; give it, or "prescribed"')
+    hinge = _hinge(table, read_name(table, f"wheel_{number}"), kind, slips)
     body = {"name": hinge.name, "parent": wheel.get("body", CARRIAGE), "hinge": kind, "hinge_x_m": wheel["x_m"],
             "hinge_y_m": wheel["y_m"], "mass_kg": read_number(table, "mass_kg"),
             "yaw_inertia_kgm2": read_number(table, "yaw_inertia_kgm2")}
-    turned, motor = _motor(table, kind, "steering_motor", "steering_gain_Nm_per_V", "steering_damping_Nms", body)
+    turned, motor = _motor(table, kind, "steering_motor", "steering_gain_Nm_per_V", "steering_damping_Nms", body, slips)
     body, hinge = body | turned, replace(hinge, motor=motor)
     wheel |= {"x_m": 0.0, "y_m": read_number(table, "scrub_m"), "body": hinge.name}
-    return _Part(table, body, hinge, [])
+    return _turned(_Part(table, body, hinge, []), slips)
 
 
-def _caster(table: Table, number: int) -> _Part:
-    hinge = _hinge(table, read_name(table, f"caster_{number}"), "free")
+def _caster(table: Table, number: int, slips: bool) -> _Part:
+    hinge = _hinge(table, read_name(table, f"caster_{number}"), "free", slips)
     trail, offset, twin = (read_number(table, key) for key in ("trail_m", "offset_m", "twin_m"))
     places = [offset] if twin is None else [offset + twin / 2, offset - twin / 2]
     body = {"hinge_x_m": table.number("x_m", finite=False), "hinge_y_m": table.number("y_m", finite=False)}
-    return _free_part(table, hinge, body, trail, places, table.flag("driven", False))
+    return _free_part(table, hinge, body, trail, places, slips, table.flag("driven", False))
 
 
-def _trailer(table: Table, number: int) -> _Part:
-    hinge = _hinge(table, read_name(table, f"trailer_{number}"), "free")
+def _trailer(table: Table, number: int, slips: bool) -> _Part:
+    hinge = _hinge(table, read_name(table, f"trailer_{number}"), "free", slips)
     half = read_number(table, "track_m") / 2
     body = {"hinge_x_m": read_number(table, "hitch_x_m"), "hinge_y_m": read_number(table, "hitch_y_m")}
-    return _free_part(table, hinge, body, read_number(table, "length_m"), [half, -half], False)
+    body |= {HITCH: True} if slips else {}
+    return _free_part(table, hinge, body, read_number(table, "length_m"), [half, -half], slips)
 
 
 def _free_part(table: Table, hinge: Hinge, body: dict[str, Any], behind_m: float, left_m: Sequence[float],
-               driven: bool) -> _Part:
+               slips: bool, driven: bool = False) -> _Part:
     """A body on a free hinge with wheels on one axle behind it."""
     radius, inertia = read_number(table, "radius_m"), read_number(table, "wheel_inertia_kgm2")
+    if slips and not inertia:
+        table.fail("wheel_inertia_kgm2", "is 0, and a wheel that may slip has a speed of its own; give a value above 0")
     com = read_number(table, "com_x_m")
     _check_mass(table, com)
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": "free", **body,
             "com_x_m": -behind_m if com is None else com,
             **{key: read_number(table, key) for key in ("mass_kg", "yaw_inertia_kgm2", "damping_Nms")}}
+    contact = read_contact(table, slips)
     wheels = [{"kind": "fixed", "x_m": -behind_m, "y_m": left, "axle_rad": ROLLS_FORWARD_RAD, "locked": False,
-               "driven": driven, "motor_circuit": 0, "radius_m": radius, "inertia_kgm2": inertia, "body": hinge.name}
-              for left in left_m]
-    return _Part(table, body, hinge, wheels)
+               "driven": driven, "motor_circuit": 0, "radius_m": radius, "inertia_kgm2": inertia, "body": hinge.name,
+               **contact} for left in left_m]
+    return _turned(_Part(table, body, hinge, wheels), slips)
 
 
 def _check_mass(table: Table, *places_m: float | None) -> None:
@@ -206,24 +229,30 @@ def _check_mass(table: Table, *places_m: float | None) -> None:
             table.fail(key, "has no effect on a body without mass; give mass_kg, or take it out")
 
 
-def _general(table: Table, number: int) -> _Part:
+def _general(table: Table, slips: bool) -> _Part:
     kind = read_choice(table, "hinge")
-    hinge = _hinge(table, read_name(table, None), kind)
+    kind = "servo" if slips and kind == "free" and table.peek("servo_gain_Nm_per_rad") else kind
+    hinge = _hinge(table, read_name(table, None), kind, slips)
     numbers = ("hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "stiffness_Nm")
     body = {"name": hinge.name, "parent": read_parent(table), "hinge": kind,
             **{key: read_number(table, key) for key in numbers}, "rest_rad": table.angle("rest", 0.0)}
     _check_mass(table, body["com_x_m"], body["com_y_m"])
-    turned, motor = _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body)
+    turned, motor = _motor(table, kind, "motor", "gain_Nm_per_V", "damping_Nms", body, slips)
     body, hinge = body | turned, replace(hinge, motor=motor)
     if hinge.is_commanded:
         for key in ("damping_Nms", "stiffness_Nm"):
             if body.get(key):
                 table.fail(key, f"has no effect on a {kind} hinge, whose rate is an input; take it out")
-    return _Part(table, body, hinge, [])
+    if table.has(HITCH):
+        hitch = table.flag(HITCH)
+        if not slips:
+            table.fail(HITCH, NEEDS_GROUND)
+        body[HITCH] = hitch
+    return _turned(_Part(table, body, hinge, []), slips)
 
 
-def _motor(table: Table, kind: str, motor_key: str, gain: str, damping: str, body: Mapping[str, Any]
-           ) -> tuple[dict[str, float], tuple[tuple[str, float], ...]]:
+def _motor(table: Table, kind: str, motor_key: str, gain: str, damping: str, body: Mapping[str, Any],
+           slips: bool) -> tuple[dict[str, float], tuple[tuple[str, float], ...]]:
     """Gain, damping and inertia of a hinge: given directly, or those of a motor at its shaft; and that motor."""
     direct = {"gain_Nm_per_V": read_number(table, gain), "damping_Nms": read_number(table, damping)}
     if kind != "motor":
@@ -241,11 +270,28 @@ def _motor(table: Table, kind: str, motor_key: str, gain: str, damping: str, bod
     motor = table.table(motor_key)
     numbers = {key: read_number(motor, key) for key in MOTOR_KEYS}
     resistance, torque, emf, ratio, friction, rotor = numbers.values()
+    further = of_motor(motor, slips)
     motor.done()
-    turned = {"gain_Nm_per_V": ratio * torque / resistance,
+    turned = further | {"gain_Nm_per_V": ratio * torque / resistance,
               "damping_Nms": ratio * ratio * (torque * emf / resistance + friction),
               "yaw_inertia_kgm2": body["yaw_inertia_kgm2"] + ratio * ratio * rotor}
     return turned, tuple(numbers.items())
+
+
+def _turned(part: _Part, slips: bool) -> _Part:
+    """A part with what acts on its hinge where wheels slip: there a servo, a rate or a motor turns each hinge."""
+    more = read_hinge_friction(part.table, part.hinge.kind, slips)
+    if not slips:
+        return part
+    body, hinge = part.body | more, part.hinge
+    if hinge.kind == "coordinated" and body["parent"] != CARRIAGE:
+        part.table.fail("body" if hinge.form == "wheel" else "parent", "a coordinated hinge is on the carriage; take "
+                        "it out, or give the hinge a servo of its own")
+    if hinge.kind in ("coordinated", "servo"):
+        body["hinge"] = "free" if body.get("servo_gain_Nm_per_rad") else "prescribed"
+    if body["hinge"] != "prescribed":
+        body |= stops_of(hinge.low_rad, hinge.high_rad)
+    return _Part(part.table, body, replace(hinge, follows=loop_of(body)), part.wheels)
 
 
 # --------------------------------------------------------------------------- names, limits, order
@@ -267,17 +313,17 @@ def read_parent(table: Table) -> str:
     return table.text("parent", CARRIAGE)
 
 
-def _hinge(table: Table, name: str, kind: str) -> Hinge:
+def _hinge(table: Table, name: str, kind: str, slips: bool) -> Hinge:
     low, high = table.angle("stop_low", None), table.angle("stop_high", None)
     if low is not None and high is not None and not low < high:
         table.fail("stop_high_rad", f"is {high:g}, which is not above stop_low_rad = {low:g}; exchange them")
     commanded = table.location.startswith(("vehicle.wheel", "vehicle.body"))
     rate = read_number(table, "rate_limit_rad_per_s") if commanded else None
     at_limit = read_choice(table, "at_limit") if commanded else None
-    if rate is not None and kind not in COMMANDED:
+    if rate is not None and kind not in LIMITED:
         table.fail("rate_limit_rad_per_s", f'has no effect on a hinge that is "{kind}"; take it out, or make it '
                    '"prescribed" or "coordinated"')
-    if at_limit == "saturate" and kind not in COMMANDED:
+    if at_limit == "saturate" and kind not in LIMITED:
         table.fail("at_limit", f'"saturate" needs a command to be limited, and this hinge is "{kind}": a stop would '
                    'push against it, which the model does not have; give "refuse"')
     start_angle = table.angle("start_angle", 0.0, finite=True)
@@ -289,7 +335,7 @@ def _hinge(table: Table, name: str, kind: str) -> Hinge:
         table.fail("start_rate_rad_per_s", f'has no effect on a hinge that is "{kind}", whose rate is an input; take '
                    "it out")
     return Hinge(name, kind, table.location, low, high, math.inf if rate is None else rate,
-                 at_limit == "refuse" or kind not in COMMANDED, start_angle, start_rate)
+                 at_limit == "refuse" or kind not in LIMITED, start_angle, start_rate)
 
 
 def check_not_steered(table: Table) -> None:
@@ -346,7 +392,6 @@ KEYS_OF_FORMS = {
 
 
 WORDS_IN_FILES = {
-    ", or give ground.friction_coefficient, so that wheels slip": "",  # it does not act on vehicles with hinges yet
     "this wheel and wheel 0 ask": "this wheel and those of the carriage ask"}
 AT_STARTS = {"vehicle.body: ": "vehicle: ", "twist: ": "steering_twist: ", "twist_rate: ": "steering_twist: "}
 """What the core says, and what holds of a scene file."""

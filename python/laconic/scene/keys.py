@@ -73,9 +73,10 @@ PROTOCOLS = {  # of drives, numbered from 1 on the wire
 STEERING = {
     "coordinated": "all such wheels point along one commanded motion of the vehicle, `steering_twist`",
     "prescribed": "its rate or angle is an input, whatever torque that takes",
-    "motor": "a motor with a voltage turns it"}
+    "motor": "a motor with a voltage turns it",
+    "servo": "a servo of finite torque turns it towards `steering_angle_rad[name]`; where wheels may slip"}
 HINGES = {
-    "free": "turns freely, with damping and a spring", "motor": "the same, and a motor with a voltage",
+    "free": "turns freely, with damping and a spring, or by a servo", "motor": "the same, and a motor with a voltage",
     "prescribed": STEERING["prescribed"], "coordinated": STEERING["coordinated"]}
 AT_LIMITS = {
     "saturate": "the command is followed as far as the limit allows, and the run reports when and for how long",
@@ -164,8 +165,8 @@ def _commanded(table: str) -> tuple[Key, ...]:
     return (
         Key(f"{table}.rate_limit_rad_per_s", A_NUMBER, "Largest rate of a prescribed or coordinated hinge; needed to "
             "follow `steering_angle_rad`", None, "no limit", POSITIVE),
-        Key(f"{table}.at_limit", TEXT, "What a limit of angle or rate does; a free or motor hinge at its stop always "
-            "ends the run", None, "`saturate` for a hinge that is commanded", choices=AT_LIMITS))
+        Key(f"{table}.at_limit", TEXT, "What a limit of angle or rate does; on ideal ground a free or motor hinge at "
+            "its stop always ends the run", None, "`saturate` for a hinge that is commanded", choices=AT_LIMITS))
 
 
 def _shaft(table: str) -> tuple[Key, ...]:
@@ -178,7 +179,43 @@ def _shaft(table: str) -> tuple[Key, ...]:
             rule=NOT_ZERO),
         Key(f"{table}.viscous_friction_Nms", A_NUMBER, "Torque per speed of the shaft", 0.0, rule=NOT_NEGATIVE),
         Key(f"{table}.rotor_inertia_kgm2", A_NUMBER, "Of the rotor; added, times the square of the gear ratio, to the "
-            "yaw inertia of what it turns", 0.0, rule=NOT_NEGATIVE))
+            "yaw inertia of what it turns", 0.0, rule=NOT_NEGATIVE),
+        Key(f"{table}.current_limit_A", A_NUMBER, f"Largest current; {SLIPS}", None, "no limit", POSITIVE))
+
+
+SLIPS = "where wheels may slip (`ground.friction_coefficient`)"
+
+
+def _yields(table: str, contacts: bool, turned: bool) -> tuple[Key, ...]:
+    """Of a hinge and its wheels on ground with friction; `turned`: it may have a servo or a motor's loop."""
+    def each(key: str, meaning: str, usual: str = "") -> Key:
+        return Key(f"{table}.{key}", A_NUMBER, f"{meaning}; {SLIPS}", None if usual else 0.0, usual, NOT_NEGATIVE)
+
+    found: tuple[Key, ...] = (each("com_z_m", "Height of its centre of mass, for loads"),
+                              each("dry_friction_Nm", "Least torque that turns the hinge"))
+    if turned:
+        found += (each("servo_gain_Nm_per_rad", "Of a servo: torque = gain · (angle that is commanded − ψ) − damping · "
+                       "ψ'. Without it a coordinated hinge has what torque it needs", "no servo"),
+                  each("servo_damping_Nms", "Of the servo"), each("servo_limit_Nm", "Its largest torque", "no limit"),
+                  Key(f"{table}.loop_V_per_rad", A_NUMBER, "Of a motor's position loop: voltage per angle that is "
+                      f"missing; {SLIPS}", 0.0),
+                  Key(f"{table}.loop_Vs_per_rad", A_NUMBER, "The same per rate; alone it is a speed loop, which "
+                      f"follows `steering_rate_rad_per_s[name]`; {SLIPS}", 0.0),
+                  each("control_period_s", "How often servo or loop looks, a whole number of steps; between it holds "
+                       "its torque or voltage", "always"))
+    return found + (_contacts(table) if contacts else ())
+
+
+def _contacts(table: str) -> tuple[Key, ...]:
+    return (
+        Key(f"{table}.load_N", A_NUMBER, f"A measured normal load, which stays; of all wheels or of none; {SLIPS}",
+            None, "by statics", NOT_NEGATIVE),
+        Key(f"{table}.scrub_radius_m", A_NUMBER, "A standing wheel resists turning about the vertical with μN times "
+            f"this; with bodies on hinges, {SLIPS}", 0.0, rule=NOT_NEGATIVE),
+        Key(f"{table}.scrub_fade_m", A_NUMBER, "A rolling wheel resists with less, by this over the radius of its path "
+            "or 1", None, "as when standing", NOT_NEGATIVE),
+        Key(f"{table}.creep", A_NUMBER, "Of a tyre: slip over rolled way at which its force reaches μN; below it force "
+            f"and slip are in proportion; with bodies on hinges, {SLIPS}", 0.0, rule=NOT_NEGATIVE))
 
 
 def _spelled(table: str, what: str, mass: str, com: str) -> tuple[Key, ...]:
@@ -210,7 +247,7 @@ HINGE_KEYS = (
     Key(f"{OWN}.yaw_inertia_kgm2", A_NUMBER, "Of all that turns about the steering axis", 0.0, rule=NOT_NEGATIVE),
     Key(f"{OWN}.steering_gain_Nm_per_V", A_NUMBER, "Torque about the steering axis per volt of its motor", 0.0),
     Key(f"{OWN}.steering_damping_Nms", A_NUMBER, "Torque about the steering axis per rate", 0.0, rule=NOT_NEGATIVE),
-    *_limits(OWN, "a steered wheel"), *_commanded(OWN), *_shaft(f"{OWN}.steering_motor"),
+    *_limits(OWN, "a steered wheel"), *_commanded(OWN), *_shaft(f"{OWN}.steering_motor"), *_yields(OWN, True, True),
     *_spelled(CASTER, "caster", "Of fork and wheels", "Its centre of mass ahead of the swivel axis"),
     Key(f"{CASTER}.x_m", A_NUMBER, "Of the swivel axis, in the parent's frame"),
     Key(f"{CASTER}.y_m", A_NUMBER, "Of the swivel axis, in the parent's frame"),
@@ -219,14 +256,14 @@ HINGE_KEYS = (
         0.0),
     Key(f"{CASTER}.twin_m", A_NUMBER, "Distance of two twin wheels from each other", None, "one wheel", POSITIVE),
     Key(f"{CASTER}.driven", "true or false", "Whether its wheels have the vehicle's motor", None, "false"),
-    *_limits(CASTER, "the swivel"),
+    *_limits(CASTER, "the swivel"), *_yields(CASTER, True, False),
     *_spelled(TRAILER, "trailer", "Of the trailer with its wheels", "Its centre of mass ahead of the hitch"),
     Key(f"{TRAILER}.hitch_x_m", A_NUMBER, "Of the hitch, in the parent's frame: for a parent that is a trailer, from "
         "its own hitch"),
     Key(f"{TRAILER}.hitch_y_m", A_NUMBER, "Of the hitch, in the parent's frame", 0.0),
     Key(f"{TRAILER}.length_m", A_NUMBER, "From the hitch back to the axle", rule=POSITIVE),
     Key(f"{TRAILER}.track_m", A_NUMBER, "Distance of its two wheels", rule=POSITIVE),
-    *_limits(TRAILER, "the trailer against its parent"),
+    *_limits(TRAILER, "the trailer against its parent"), *_yields(TRAILER, True, False),
     Key(f"{BODY}.name", TEXT, "In the names of signals, and for `body` and `parent`"),
     Key(f"{BODY}.parent", TEXT, "Name of the body that it hangs on", None, CARRIAGE),
     Key(f"{BODY}.hinge", TEXT, "What turns it", choices=HINGES),
@@ -240,7 +277,9 @@ HINGE_KEYS = (
     Key(f"{BODY}.stiffness_Nm", A_NUMBER, "Of a free or motor hinge: torque per radian", 0.0, rule=NOT_NEGATIVE),
     Key(f"{BODY}.rest_rad", A_NUMBER, "Angle at which that spring is relaxed", 0.0),
     Key(f"{BODY}.gain_Nm_per_V", A_NUMBER, "Torque of a motor hinge per volt", 0.0),
-    *_limits(BODY, "the hinge"), *_commanded(BODY), *_shaft(f"{BODY}.motor"))
+    *_limits(BODY, "the hinge"), *_commanded(BODY), *_shaft(f"{BODY}.motor"), *_yields(BODY, False, True),
+    Key(f"{BODY}.hitch", "true or false", f"Whether the hinge carries no pitch and roll, as of a trailer; {SLIPS}",
+        None, "false"))
 """Keys of bodies on hinges, which the core's list of scene fields does not have."""
 
 KEYS: Mapping[str, Key] = {key.path: key for key in (

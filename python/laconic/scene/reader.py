@@ -16,7 +16,8 @@ from laconic.scene.base import read_base
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
-from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground
+from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground, slips
+from laconic.scene.hinge_friction import read_contact
 from laconic.scene.hinge_signals import (
     check_commands,
     check_hinge_signal,
@@ -44,7 +45,9 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     if len(parts["name"]) > LONGEST_NAME:
         top.fail("name", f"has {len(parts['name'])} letters; give at most {LONGEST_NAME}, and what else there is to "
                  "say as source")
-    parts["vehicle"], hung = read_vehicle(top.table("vehicle", required=True))
+    ground = top.peek("ground")
+    slipping = isinstance(ground, Mapping) and "friction_coefficient" in ground
+    parts["vehicle"], hung = read_vehicle(top.table("vehicle", required=True), slipping)
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))
     check_friction(top, parts["vehicle"])
@@ -77,12 +80,15 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     check_ideal(top, vehicle, hung.wheel_places)
     known = {signal: name for name, of_name in input_signals(vehicle, hinges).items() for signal in of_name}
     parts["inputs"] = [read_input(each, len(vehicle["wheel"]), known, hinges) for each in top.tables("input")]
-    parts["run"] = read_run(top.table("run", required=True), method_names(), reals)
+    parts["run"] = read_run(top.table("run", required=True), methods_with_hinges(vehicle), reals)
+    if parts["run"].get("tolerance") is not None and slips(vehicle):
+        top.fail("run.step_s", '"auto" is not found for hinges on ground with friction yet; give a step in seconds, '
+                 "such as 0.001")
     check_places(top, parts["inputs"])
     for each in parts["inputs"]:
         check_input(top, each, vehicle, parts["run"]["duration_s"])
     check_commands(top, parts["inputs"], hinges)
-    check_start_with_hinges(top, parts["initial"])
+    check_start_with_hinges(top, parts["initial"], slips(vehicle))
     if top.has("sensors"):
         top.fail("sensors", "are not simulated for vehicles with hinges yet; take the table out")
     outputs = top.table("outputs")
@@ -96,29 +102,33 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
 
 
 def check_ideal(top: Table, vehicle: Mapping[str, Any], wheel_places: Sequence[str]) -> None:
-    """Fails for ground friction and limits of drives, which do not act on vehicles with hinges yet."""
-    remedy = "does not act on vehicles with hinges yet; take it out for a ground that holds every wheel"
-    for key in vehicle.get("ground", {}):
-        if not key.startswith("slope_"):
-            top.fail(f"ground.{key}", f"{remedy}, and give vehicle.friction_coefficient to see where it would not")
+    """Fails for limits of drives on ideal ground, where they do not act on vehicles with hinges."""
+    if slips(vehicle):
+        return
+    remedy = "needs wheels that may slip, as the vehicle has hinges; give ground.friction_coefficient, or take it"
     if "drive" in vehicle:
-        top.fail("vehicle.drive", "limits no drive of a vehicle with hinges yet; take it out")
+        top.fail("vehicle.drive", f"{remedy} out")
     for place, wheel in zip(wheel_places, vehicle["wheel"], strict=True):
         if wheel.get("motor_circuit"):
-            top.fail(f"{place}.motor_circuit", f"{remedy.partition(';')[0]}; take it out")
+            top.fail(f"{place}.motor_circuit", f"{remedy} out")
 
 
-def check_start_with_hinges(top: Table, initial: Mapping[str, Any]) -> None:
+def methods_with_hinges(vehicle: Mapping[str, Any]) -> tuple[str, ...]:
+    """The methods that step a vehicle with hinges: on ground with friction there is one."""
+    return ("auto",) if slips(vehicle) else method_names()
+
+
+def check_start_with_hinges(top: Table, initial: Mapping[str, Any], slipping: bool) -> None:
     """Fails for starts in numbers that a vehicle with hinges does not have."""
     if "nu_rad_per_s" in initial:
         top.fail("initial.nu_rad_per_s", "is not a start of a vehicle with hinges; give velocity_body_m_per_s and "
                  "yaw_rate_rad_per_s")
-    if "wheel_speed_rad_per_s" in initial:
+    if "wheel_speed_rad_per_s" in initial and not slipping:
         top.fail("initial.wheel_speed_rad_per_s", "follows from the motion, as wheels roll without slip on "
                  "hinges; take it out")
 
 
-def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:
+def read_vehicle(table: Table, slipping: bool) -> tuple[dict[str, Any], Hung | None]:
     """`[vehicle]` with the keys of laconic_vehicle; `motor` stays apart for laconic_motor_fit. With bodies on hinges
     also those, and what the core does not know of them."""
     fields = load().fields_of("vehicle")
@@ -127,11 +137,11 @@ def read_vehicle(table: Table) -> tuple[dict[str, Any], Hung | None]:
     vehicle |= {field.key: read_field(table, field, 0.0) for field in fields if field.need == "NEVER"}
     if table.has("friction_coefficient"):
         key_of(table, "friction_coefficient").check(table, vehicle["friction_coefficient"])
-    wheels = [(each, read_wheel(each)) for each in table.tables("wheel")]
+    is_hung = has_hinges({key: table.peek(key) for key in ("wheel", *SHORT_FORMS)})
+    wheels = [(each, read_wheel(each, slipping, is_hung)) for each in table.tables("wheel")]
     vehicle["wheel"] = [wheel for _, wheel in wheels]
     needed = ... if vehicle["wheel"] else 0.0
-    is_hung = has_hinges({key: table.peek(key) for key in ("wheel", *SHORT_FORMS)})
-    hung = read_hinges(table, wheels) if is_hung else None
+    hung = read_hinges(table, wheels, slipping) if is_hung else None
     if hung is not None:
         vehicle |= {"wheel": hung.wheels, "body": hung.bodies}
     vehicle |= {field.key: read_field(table, field, needed) for field in fields if field.need == "WITH_WHEELS"}
@@ -164,7 +174,7 @@ def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
     return {"motor": values}
 
 
-def read_wheel(table: Table) -> dict[str, Any]:
+def read_wheel(table: Table, slipping: bool = False, is_hung: bool = False) -> dict[str, Any]:
     """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
     kind = read_choice(table, "kind", hints=KINDS_OF_WHEELS)
     wheel: dict[str, Any] = {"kind": kind, **read_position(table)}
@@ -183,6 +193,7 @@ def read_wheel(table: Table) -> dict[str, Any]:
     wheel["motor_circuit"] = read_circuit(table)
     wheel |= read_own(table, [field for field in fields.values() if field.is_own])
     check_wheel(table, wheel)
+    wheel |= read_contact(table, slipping, is_hung)
     wheel |= {"steered": steered} if steered else {}
     wheel |= {"body": body} if body not in (None, CARRIAGE) else {}
     if not steered:

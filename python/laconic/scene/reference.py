@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from laconic.core import Field, load
 from laconic.core.fields import ITEM, OF_GROUND
-from laconic.scene.hinge_signals import HINGE_INPUTS, HINGE_OUTPUTS
+from laconic.scene.hinge_signals import HINGE_INPUTS, HINGE_OUTPUTS, SLIPPING_ALONE, SLIPPING_OUTPUTS
 from laconic.scene.keys import A_NUMBER, KEYS, TABLES, Key
 from laconic.scene.sensors import DELAY, OF_ENCODERS, OF_IMU
 from laconic.scene.signals import (
@@ -36,6 +36,7 @@ RANGES = {"POSITIVE": "above 0", "NOT_NEGATIVE": "0 or more", "SHARE": "0 to 1",
 NEEDS = {"WITH_WHEELS": "must be given where there are wheels", "NEVER": "0",
          "WITH_MOTOR": "no motor; one of the two alone is refused"}
 MUST = "must be given"
+SLIPPING = "bodies on hinges and ground friction"
 OF_FMUS = (r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)"
            r"|; 0 (without|where|for) [^;]*")
 """Words that a variable has for the sake of FMI alone."""
@@ -163,6 +164,8 @@ def outputs(words: Mapping[str, str]) -> list[Signal]:
              **dict.fromkeys(OF_ENCODERS, -1), WHEEL_LOAD: -1, SUPPORT_LOAD: -2}
     of_hinges = [Signal(name, "[name]", unit_of(name), meaning, "bodies on hinges")
                  for name, meaning in HINGE_OUTPUTS.items()]
+    slipping = {name: ("[name]", meaning) for name, meaning in SLIPPING_OUTPUTS.items()} | SLIPPING_ALONE
+    of_hinges += [Signal(name, each, unit_of(name), meaning, SLIPPING) for name, (each, meaning) in slipping.items()]
     return _signals(every, words) + of_hinges
 
 

@@ -9,22 +9,24 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from laconic.base.paths import scene_path
 from laconic.core import REALS, Core, load
-from laconic.core.articulated import ArticulatedVehicle, max_bodies, method_names
+from laconic.core.articulated import ArticulatedVehicle, max_bodies
 from laconic.core.given import shown
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
+from laconic.core.slipping import SlippingVehicle
 from laconic.errors import BadInput, Refused
 from laconic.scene.base import BaseTable
 from laconic.scene.drives import Drives
+from laconic.scene.ground import slips
 from laconic.scene.hinges import Hinge, check_without_hinges, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.methods import METHODS
 from laconic.scene.names import in_file
-from laconic.scene.reader import read_parts, read_run
+from laconic.scene.reader import methods_with_hinges, read_parts, read_run
 from laconic.scene.sensors import DELAY_S, NO_SENSORS, SensorTables
 from laconic.scene.speed_controller import SpeedController
 from laconic.scene.step_choice import AUTO, chosen_step_s
@@ -32,6 +34,7 @@ from laconic.scene.table import Table, plain, read_toml
 
 NOUNS = {"body": "bodies on hinges", "wheel": "wheels", "support": "supports"}
 MOST_STEPS = 9e15  # as laconic_steps_in
+Hinged = TypeVar("Hinged", bound=ArticulatedVehicle)
 
 
 @dataclass(frozen=True)
@@ -120,6 +123,11 @@ class Scene:
         return bool(self.hinges)
 
     @property
+    def slips_on_hinges(self) -> bool:
+        """Whether it has bodies on hinges and wheels that may slip."""
+        return self.has_hinges and slips(self.vehicle)
+
+    @property
     def wheel_count(self) -> int:
         """N."""
         return len(self.vehicle["wheel"])
@@ -132,7 +140,7 @@ class Scene:
         tolerance = entries.pop("tolerance")
         if tolerance is not None and step_s is None:
             entries |= {"step_s": AUTO, "tolerance": tolerance}
-        methods = method_names() if self.has_hinges else METHODS
+        methods = methods_with_hinges(self.vehicle) if self.has_hinges else METHODS
         run = Run(**read_run(Table(self.path, "run", entries), methods, REALS))
         return with_found_step(replace(self, run=run))
 
@@ -185,14 +193,24 @@ class Scene:
             raise self.refusal_in_file(refused) from None
 
     def articulated_vehicle(self, core: Core) -> ArticulatedVehicle:
-        """The checked vehicle of a scene with hinges."""
+        """The checked vehicle of a scene with hinges on ideal ground."""
+        if self.slips_on_hinges:
+            raise BadInput(f"{self.path}: ground.friction_coefficient: this does not take hinges on ground with "
+                           "friction yet; use laconic simulate, or take it out")
+        return self._with_room(core, ArticulatedVehicle)
+
+    def slipping_vehicle(self, core: Core) -> SlippingVehicle:
+        """The checked vehicle of a scene with hinges on ground with friction."""
+        return self._with_room(core, SlippingVehicle)
+
+    def _with_room(self, core: Core, kind: type[Hinged]) -> Hinged:
         limits = (("body", max_bodies(core)), ("wheel", core.max_wheels), ("support", core.max_supports))
         for what, limit in limits:
             if len(self.vehicle[what]) > limit:
                 raise BadInput(f"{self.path}: vehicle: has {len(self.vehicle[what])} {NOUNS[what]}, this build of the "
                                f"core has room for {limit}; take some out")
         try:
-            return ArticulatedVehicle(self.vehicle, core.real)
+            return kind(self.vehicle, core.real)
         except Refused as refused:
             raise self.refusal_in_file(refused) from None
         except BadInput as bad:

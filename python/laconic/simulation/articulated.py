@@ -27,6 +27,7 @@ from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.table import Table
 from laconic.simulation.loads import Loads
+from laconic.simulation.slipping import USUAL as USUAL_SLIPPING
 from laconic.simulation.steering import Commands
 
 CHUNK = 2048             # steps whose inputs are made ready at once
@@ -47,7 +48,7 @@ OF_REACTIONS = {"wheel_torque_Nm": "wheel_torque_Nm", "wheel_reaction_N": "along
 def usual_signals_with_hinges(scene: Scene) -> tuple[str, ...]:
     """Pose, velocities, hinges, wheels and energy."""
     known = output_signals_of(scene.vehicle, scene.hinges)
-    return tuple(signal for name in USUAL for signal in known[name])
+    return tuple(signal for name in (USUAL_SLIPPING if scene.slips_on_hinges else USUAL) for signal in known[name])
 
 
 def input_signals_with_hinges(scene: Scene) -> tuple[str, ...]:

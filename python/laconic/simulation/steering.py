@@ -74,10 +74,13 @@ class Commands:
         self._numbers = {signal: at for at, signal in enumerate(self.inputs.signals)}
         self._plain = [(at, self.vehicle.slot(signal)) for signal, at in self._numbers.items()
                        if signal.partition("[")[0] not in (ANGLE, CURVATURE)]
-        self._steering = _Steering(self.scene, self._numbers) if self.vehicle.is_coordinated else None
+        self._steering = self._steering_of() if self.vehicle.is_coordinated else None
         self._ends = 0  # the step that a limit refuses
         self._twist: np.ndarray | None = None
         self._stuck: tuple[np.ndarray, Hinge, str, float, float] | None = None  # the target of a hinge at its stop
+
+    def _steering_of(self) -> _Steering:
+        return _Steering(self.scene, self._numbers)
 
     # ---- rows
 
@@ -293,7 +296,8 @@ class _Steering:
 
     def __init__(self, scene: Scene, numbers: dict[str, int]):
         self.scene, self._numbers = scene, numbers
-        bodies = [body for body in scene.vehicle["body"] if body["hinge"] == "coordinated"]
+        bodies = [body for hinge, body in zip(scene.hinges, scene.vehicle["body"], strict=True)
+                  if hinge.kind == "coordinated"]
         self.hinges = [hinge for hinge in scene.hinges if hinge.kind == "coordinated"]
         self.places = np.array([(body["hinge_x_m"], body["hinge_y_m"]) for body in bodies])
         self._size_m = max(float(np.abs(self.places).max()), 1e-3)

@@ -204,12 +204,15 @@ def test_what_the_package_needs_anyway_belongs_to_no_extra():
     assert extra_of("numpy") == ""
 
 
+NOT_LOCKED = {"asammdf", "rerun-sdk"}  # one slows each start of python-can by a second, the other has 170 MB
+
+
 def test_the_lock_is_made_from_what_the_package_needs():
     text = (HOST / "requirements.in").read_text(encoding="utf-8")
     section = text[text.index("# the package\n"):]
     locked = names_in(section[:section.index("\n\n")].splitlines()[1:])
     needed = [*PROJECT["dependencies"], *itertools.chain(*PROJECT["optional-dependencies"].values())]
-    assert locked == names_in(needed)
+    assert NOT_LOCKED < names_in(needed) and locked == names_in(needed) - NOT_LOCKED
 
 
 def test_the_version_is_that_of_the_project():

@@ -20,6 +20,7 @@ from laconic.scene import METHODS, read_scene
 from laconic.scene.table import Table as Case
 from laconic.tools.verify.articulated import ArticulatedResult, verify_articulated_case
 from laconic.tools.verify.enclosed_result import EnclosedResult, bound_text
+from laconic.tools.verify.slipping import SlippingResult, is_slipping, verify_slipping_case
 from laconic.tools.verify.trajectories import (
     CaseResult,
     as_json,
@@ -28,7 +29,7 @@ from laconic.tools.verify.trajectories import (
     verify_case,
 )
 
-Result = CaseResult | ArticulatedResult
+Result = CaseResult | ArticulatedResult | SlippingResult
 METHOD, STEP_S, REAL = "auto", 1e-3, "double"  # where neither the command line nor a scene gives them
 
 
@@ -52,6 +53,9 @@ def command(reference: str, method: str | None, step_s: float | None, real: str 
 
     With --enclose the errors are proved bounds, and REFERENCE may be a scene, by path or name: see docs/accuracy.md. A
     file's own states must also lie inside the enclosure, or the exit status is 1.
+
+    In a file of vehicles with hinges on ground with friction the errors are those at the end, in their own units, and a
+    single step has the size that the file gives it.
     """
     check_positive(step_s, tolerance)
     if enclose_wanted and is_scene(reference):
@@ -59,13 +63,19 @@ def command(reference: str, method: str | None, step_s: float | None, real: str 
     used = (method or METHOD, step_s or STEP_S, real or REAL)
     cases, core = read_reference(Path(reference)), load(used[2])
     articulated = [case for case in cases if is_articulated(case)]
-    check_method(used[0], method_names() if articulated else METHODS)
-    if articulated and enclose_wanted:
-        articulated[0].fail("vehicle", "has hinges, which --enclose does not take yet; leave it out")
+    slipping = any(map(is_slipping, cases))
+    check_method(used[0], (METHOD,) if slipping else method_names() if articulated else METHODS)
+    if (articulated or slipping) and enclose_wanted:
+        cases[0].fail("vehicle", "has hinges, which --enclose does not take yet; leave it out")
     check = verify_enclosed if enclose_wanted else verify_one
-    with progress_bar("verify", sum(len(list(case.tables("segments"))) for case in cases)) as advance:
+    with progress_bar("verify", sum(segments_of(case) for case in cases)) as advance:
         results = [check(core, case, *used[:2], advance) for case in cases]
     return told(results, tolerance, used, json_wanted)
+
+
+def segments_of(case: Case) -> int:
+    """How many segments a case has; one of single steps has none."""
+    return len(list(case.tables("segments"))) if case.has("segments") else 0
 
 
 def check_method(method: str, known: Sequence[str]) -> None:
@@ -75,7 +85,9 @@ def check_method(method: str, known: Sequence[str]) -> None:
 
 
 def verify_one(core: Core, case: Case, method: str, step_s: float, advance: Callable[[], None]) -> Result:
-    """One case of a rigid vehicle or of one with hinges."""
+    """One case of a rigid vehicle or of one with hinges, on ideal ground or on ground with friction."""
+    if is_slipping(case):
+        return verify_slipping_case(core, case, method, step_s, advance)
     check = verify_articulated_case if is_articulated(case) else verify_case
     return check(core, case, method, step_s, advance)
 
@@ -124,15 +136,17 @@ def show(results: list[Result], tolerance: float | None, title: str) -> None:
     table = Table(title=title, title_justify="left")
     table.add_column("case")
     enclosed = any(isinstance(each, EnclosedResult) for each in results)
+    slipping = any(isinstance(each, SlippingResult) for each in results)
     hinged = any(isinstance(each, ArticulatedResult) for each in results)
     headings = ("error ν ≤", "error pose ≤", "error wheels ≤", "width ≤") if enclosed else (
+        "error velocities", "error pose", "error wheel speeds", "energy norm", "error hinge rate") if slipping else (
         "error velocity", "error hinge rate", "error hinge angle", "error pose", "error wheels") if hinged else (
         "error ν", "error pose", "error wheels")
     for heading in (*headings, "ms"):
         table.add_column(heading, justify="right")
     table.add_column("status")
     for each in results:
-        numbers = each.errors if isinstance(each, ArticulatedResult) else [
+        numbers = each.errors if isinstance(each, ArticulatedResult | SlippingResult) else [
             each.error_nu, each.error_pose, each.error_wheel]
         texts = ["–" if e is None else bound_text(e) if enclosed else f"{e:.1e}" for e in numbers]
         texts += [bound_text(each.width)] if isinstance(each, EnclosedResult) else ["–"] if enclosed else []

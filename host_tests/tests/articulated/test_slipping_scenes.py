@@ -1,0 +1,193 @@
+"""Scenes with hinges on ground with friction: what people give and what a run shows."""
+
+from __future__ import annotations
+
+import copy
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hinge_scenes import CASTER, HINGED, WHEEL, held, tables_of, two_wheels
+
+from laconic import SlippingVehicle, Trajectory, build_scene, plot, simulate
+from laconic.errors import BadInput, Refused
+
+GROUND = {"friction_coefficient": 0.7}
+SERVO = {"servo_gain_Nm_per_rad": 60.0, "servo_damping_Nms": 1.5, "servo_limit_Nm": 3.0}
+STEERED = {**WHEEL, "x_m": 0.5, "y_m": 0.0, "steered": "servo", "name": "front", "driven": False, "mass_kg": 1.0,
+           "yaw_inertia_kgm2": 0.01, **SERVO}
+HEAVY_CASTER = {**CASTER, "wheel_inertia_kgm2": 5e-5, "mass_kg": 0.4, "yaw_inertia_kgm2": 4e-4, "name": "front"}
+
+
+def shortened(tables: dict[str, Any], duration_s: float = 3.0) -> dict[str, Any]:
+    """Tables of a shorter run, without what lies beyond its end."""
+    inputs = []
+    for each in tables.get("input", []):
+        count = sum(t <= duration_s for t in each.get("t_s", [0.0]))
+        kept = count + (each["kind"] == "table")
+        if count:
+            inputs.append({key: value[:kept] if key in ("t_s", "value") else value for key, value in each.items()})
+    return tables | {"input": inputs, "run": {"duration_s": duration_s, "step_s": 0.005}}
+
+
+def slipping(name: str, duration_s: float = 3.0) -> dict[str, Any]:
+    """A scene of the project on ground with friction."""
+    tables = tables_of(name)
+    friction = tables["vehicle"].pop("friction_coefficient", 0.8)
+    return shortened(tables, duration_s) | {"ground": {"friction_coefficient": friction}}
+
+
+def carriage(**vehicle: Any) -> dict[str, Any]:
+    """Two wheels with inertia, without which a wheel that slips has no speed of its own."""
+    return two_wheels(wheel_inertia_kgm2=0.01, **vehicle)
+
+
+def tricycle(steered: dict[str, Any] | None = None, **tables: Any) -> dict[str, Any]:
+    entries = carriage() | {"ground": dict(GROUND)} | tables
+    entries["vehicle"] |= {"motor_gain_Nm_per_V": 0.5, "motor_damping_Nms": 0.3, "com_x_m": 0.15, "com_z_m": 0.1}
+    entries["vehicle"]["wheel"].append({**STEERED, **(steered or {})})
+    return entries
+
+
+def ran(tables: dict[str, Any]) -> Trajectory:
+    return simulate(build_scene(copy.deepcopy(tables)))
+
+
+def last(run: Trajectory, name: str) -> float:
+    return float(run.columns[name][-1])
+
+
+def fails(tables: dict[str, Any], *words: str) -> None:
+    with pytest.raises((BadInput, Refused)) as why:
+        ran(tables)
+    text = str(why.value)
+    assert "\n" not in text
+    for word in words:
+        assert word in text, text
+
+
+@pytest.mark.parametrize("name", HINGED)
+def test_each_robot_of_the_project_moves_as_on_ideal_ground_where_it_grips(name: str) -> None:
+    gone, there = ran(shortened(tables_of(name))), ran(slipping(name))
+    for key in ("x_m", "y_m"):
+        assert abs(last(gone, key) - last(there, key)) <= 0.03
+
+
+@pytest.mark.parametrize("name", ["frc_swerve_mk4i", "tugger_train", "tricycle_agv"])
+def test_the_book_of_energy_closes_at_every_row(name: str) -> None:
+    found = ran(slipping(name)).columns
+    came = sum(found[key] for key in ("supply_energy_J", "outer_work_J", "servo_work_J"))
+    gone = sum(column for key, column in found.items() if key.endswith("_loss_J"))
+    book = found["energy_J"] + found["spring_energy_J"] - came + gone
+    assert np.ptp(book) <= 1e-7 * max(1.0, float(np.abs(came).max()))
+
+
+def test_a_servo_turns_a_wheel_to_the_commanded_angle_and_no_further_than_its_torque_allows() -> None:
+    command = {"input": held(steering_angle_rad__front=0.3), "run": {"duration_s": 2.0, "step_s": 1e-3}}
+    strong, weak = (ran(tricycle({"servo_limit_Nm": limit, "dry_friction_Nm": 0.5}, **command))
+                    for limit in (3.0, 0.4))
+    assert abs(last(strong, "hinge_angle_rad[front]") - 0.3) < 0.02
+    assert last(weak, "hinge_angle_rad[front]") < 0.1
+    assert np.abs(weak.columns["hinge_reaction_Nm[front]"]).max() <= 0.4 + 1e-12
+
+
+def test_a_rate_limit_holds_a_servos_command_back_and_is_reported() -> None:
+    run = ran(tricycle({"rate_limit_rad_per_s": 0.2}, input=held(steering_angle_rad__front=0.3)))
+    assert run.limited and run.limited[0].limit == "rate"
+    assert last(run, "hinge_angle_rad[front]") < 0.11
+
+
+def test_a_prescribed_wheel_follows_its_angle() -> None:
+    keys = {"steered": "prescribed", "rate_limit_rad_per_s": 1.0, "at_limit": "saturate"}
+    tables = tricycle(keys, input=held(steering_angle_rad__front=0.2), run={"duration_s": 1.0, "step_s": 1e-3})
+    for key in SERVO:
+        del tables["vehicle"]["wheel"][2][key]
+    assert abs(last(ran(tables), "hinge_angle_rad[front]") - 0.2) < 1e-9
+
+
+def test_a_stop_holds_a_caster_that_would_turn_past_it() -> None:
+    tables = carriage(caster=[{**HEAVY_CASTER, "start_angle_rad": 0.1, "stop_low_rad": -0.5, "stop_high_rad": 0.5}])
+    tables |= {"ground": GROUND, "initial": {"velocity_body_m_per_s": [-0.8, 0.0]}}
+    angles = ran(tables).columns["hinge_angle_rad[front]"]
+    assert angles.max() == pytest.approx(0.5, abs=1e-6)
+
+
+def test_a_trailer_jackknifes_in_reverse_only_where_nothing_holds_it() -> None:
+    trailer = {"name": "cart", "hitch_x_m": -0.3, "length_m": 0.8, "track_m": 0.4, "radius_m": 0.1,
+               "wheel_inertia_kgm2": 0.01, "mass_kg": 10.0, "yaw_inertia_kgm2": 0.5, "start_angle_rad": 0.05}
+    tables = carriage(trailer=[trailer]) | {"ground": GROUND, "run": {"duration_s": 3.0, "step_s": 1e-3}}
+    tables["initial"] = {"velocity_body_m_per_s": [-1.0, 0.0]}
+    assert abs(last(ran(tables), "hinge_angle_rad[cart]")) > 0.5  # from 0.05
+    tables["vehicle"]["trailer"][0]["dry_friction_Nm"] = 200.0
+    assert abs(last(ran(tables), "hinge_angle_rad[cart]")) < 0.1
+
+
+def test_creep_widens_a_turn() -> None:
+    command = {"input": held(steering_angle_rad__front=0.3), "run": {"duration_s": 1.0, "step_s": 1e-3}}
+    stiff, soft = (abs(last(ran(tricycle({"creep": creep}, **command)), "heading_rad")) for creep in (0.0, 0.3))
+    assert soft < 0.97 * stiff
+
+
+def test_a_position_loop_samples_at_its_own_period() -> None:
+    motor = {"steered": "motor", "steering_gain_Nm_per_V": 0.5, "steering_damping_Nms": 0.2, "loop_V_per_rad": 40.0,
+             "loop_Vs_per_rad": 2.0, "control_period_s": 0.01}
+    tables = tricycle(motor, input=held(steering_angle_rad__front=0.2), run={"duration_s": 2.0, "step_s": 1e-3})
+    for key in SERVO:
+        del tables["vehicle"]["wheel"][2][key]
+    assert abs(last(ran(tables), "hinge_angle_rad[front]") - 0.2) < 0.01
+    tables["vehicle"]["wheel"][2]["control_period_s"] = 0.0015
+    fails(tables, "vehicle.wheel[3].control_period_s", "no whole number of steps")
+
+
+def test_the_supply_limits_motors_of_wheels_and_of_steering() -> None:
+    tables = slipping("tricycle_agv", 10.0)
+    tables["vehicle"]["drive"] = {"supply_V": 6.0, "supply_resistance_ohm": 0.05}
+    tables["outputs"] = {"signals": ["supply_voltage_V", "drive_limit", "hinge_current_A", "hinge_drive_limit"]}
+    found = ran(tables).columns
+    assert found["drive_limit[1]"].max() == 1.0 and found["supply_voltage_V"][1:].min() < 6.0
+
+
+def test_a_picture_shows_slip_loads_and_energy(tmp_path: Path) -> None:
+    picture = plot(ran(tricycle()), tmp_path / "run.png")
+    titles = " ".join(axes.get_title(loc="left") for axes in picture.axes)
+    assert "Slip of each wheel" in titles and "Normal loads" in titles and "Energy" in titles
+
+
+@pytest.mark.parametrize(("tables", "words"), [
+    (tricycle({"servo_gain_Nm_per_rad": 0.0}), ("wheel[3].servo", "servo_gain_Nm_per_rad")),
+    (tricycle({"loop_V_per_rad": 1.0}), ("wheel[3].loop_V_per_rad", "loop")),
+    (tricycle({"scrub_fade_m": 0.1}), ("wheel[3].scrub_fade_m", "scrub_radius_m")),
+    (tricycle({"creep": -0.1}), ("wheel[3].creep", "0 or more")),
+    (tricycle({"load_N": 10.0}), ("wheel[1].load_N", "above 0")),
+    (tricycle({"steered": "motor", "steering_gain_Nm_per_V": 1.0}), ("servo_gain_Nm_per_rad", "servo")),
+    (tricycle(run={"duration_s": 0.1, "step_s": 1e-3, "method": "circle"}), ("run.method", "auto")),
+    (tricycle(outputs={"signals": ["no_slip_margin_N"]}), ("no_slip_margin_N", "friction_coefficient")),
+    (tricycle() | {"ground": {"slope_rad": 0.0}}, ("wheel[3].", "ground.friction_coefficient")),
+    (carriage(caster=[{**CASTER, "wheel_inertia_kgm2": 1e-4}]) | {"ground": GROUND}, ("caster[1]", "inertia")),
+    (carriage(caster=[CASTER]) | {"ground": GROUND}, ("caster[1].wheel_inertia_kgm2", "above 0")),
+    (carriage(caster=[{**HEAVY_CASTER, "servo_gain_Nm_per_rad": 1.0}]) | {"ground": GROUND}, ("caster[1].servo",)),
+    (carriage(caster=[{**HEAVY_CASTER, "dry_friction_Nm": 1.0}]), ("caster[1].dry_friction_Nm", "ground.friction"))])
+def test_what_contradicts_is_one_line_with_field_and_remedy(tables: dict[str, Any], words: tuple[str, ...]) -> None:
+    fails(tables, *words)
+
+
+def test_wheels_without_hinges_refuse_scrub_and_creep() -> None:
+    tables = carriage() | {"ground": GROUND}
+    tables["vehicle"]["wheel"][0]["creep"] = 0.1
+    fails(tables, "vehicle.wheel[1].creep", "hinges")
+
+
+def test_python_reaches_the_vehicle_of_a_scene_and_a_copy_moves_by_itself() -> None:
+    plant = SlippingVehicle.of(build_scene(tricycle())).plant(step_s=1e-3, velocity_m_per_s=[0.5, 0.0])
+    other = copy.copy(plant)
+    plant.run({"steering_angle_rad[front]": 0.2, "voltage_V[1]": 3.0}, steps=200)
+    assert (plant.steps, other.steps) == (200, 0) and other.motion().x_m == 0.0
+    saved, found = plant.save(), plant.outputs()
+    plant.run(None, steps=50)
+    plant.restore(saved, 200)
+    assert plant.outputs().motion.x_m == found.motion.x_m
+    assert found.normal_N.sum() == pytest.approx(21.0 * 9.80665, rel=1e-3) and math.isfinite(found.slip_loss_J)
+    with pytest.raises(BadInput, match="steering_angle_rad"):
+        plant.run({"steering_angle_rad[rear]": 0.1})

@@ -1,0 +1,229 @@
+"""Runs scenes of vehicles with hinges on ground with friction, and keeps their outputs.
+
+Commands are those of ideal ground (laconic.simulation.steering), held over each step. A prescribed hinge, also a
+coordinated one without a servo, gets rates; servos and loops get angles or rates as their target.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from laconic.base.progress import Advance
+from laconic.core.articulated_input import input_slots
+from laconic.core.slipping import TARGET, SlippingOutputs, SlippingPlant, SlippingVehicle, tree_row_length
+from laconic.core.spelling import wrapped
+from laconic.errors import Refused
+from laconic.scene import Scene
+from laconic.scene.hinge_signals import ANGLE, BOOK, CURVATURE, OF_SUPPLY, TWIST
+from laconic.scene.inputs import InputsOnGrid
+from laconic.simulation.loads import Loads
+from laconic.simulation.steering import Commands
+
+CHUNK = 2048  # steps whose inputs are made ready at once
+MIDDLE = 1    # of the samples of a step: start, middle, end
+USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
+         "hinge_rate_rad_per_s", "hinge_reaction_Nm", "wheel_speed_rad_per_s", "wheel_angle_rad", "slip_along_m_per_s",
+         "slip_across_m_per_s", "contact_state", "wheel_load_N", "energy_J", *BOOK)
+OF_MOTION = ("wheel_speed_rad_per_s", "wheel_angle_rad", "hinge_angle_rad", "hinge_rate_rad_per_s", "body_x_m",
+             "body_y_m", "body_heading_rad")
+OF_OUTPUTS = {"wheel_torque_Nm": "wheel_torque_Nm", "wheel_reaction_N": "along_N", "wheel_lateral_N": "across_N",
+              "scrub_torque_Nm": "scrub_Nm", "wheel_load_N": "normal_N", "hinge_reaction_Nm": "hinge_torque_Nm",
+              "hinge_friction_Nm": "friction_torque_Nm", "hinge_stop_Nm": "stop_torque_Nm",
+              **{name: name for name in ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit",
+                                         "motor_current_A")}}
+BEHIND_WHEELS = {"hinge_current_A": "motor_current_A", "hinge_drive_limit": "drive_limit", "support_load_N": "normal_N"}
+"""Outputs whose numbers follow those of the wheels in one array."""
+
+
+class SlippingCommands(Commands):
+    """The rows of inputs of a run on ground with friction: (steps, numbers)."""
+
+    vehicle: SlippingVehicle
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._coordinated = [hinge for hinge in self.scene.hinges if hinge.kind == "coordinated"]
+        self._steering = self._steering_of() if self._coordinated else None
+        names = self.vehicle.names
+        rates = input_slots(self.vehicle.core, names, "steering_rate_rad_per_s")
+        self._rates = dict(zip(names, rates, strict=True))
+        self._targets = {name: self.vehicle.slot(f"{TARGET}[{name}]") for name in names}
+
+    def start_angles(self) -> list[float]:
+        """Angles of the hinges at the start: coordinated ones point as commanded."""
+        if self._steering is not None:
+            row = self.first_row()
+            slot = self.vehicle.slot(TWIST)
+            twist = row[slot : slot + 3]
+            if not np.any(twist):
+                raise self._no_direction(0)
+            self._take_angles(self._steering, twist)
+        return [self._angle[hinge.name] for hinge in self.scene.hinges]
+
+    def _no_direction(self, step: int) -> Refused:
+        return Refused("twist zero", "twist", 0, f"{self.scene.path}: at t = {step * self.inputs.step_s:g} s: steering_"
+                       "twist: is 0, which gives coordinated wheels no direction; stop by voltages, and keep the twist")
+
+    def held_rows(self, first: int, count: int) -> np.ndarray:
+        """The inputs of steps `first` …, held over each. Fewer where a limit ends the run: then `refused` is set."""
+        angles = dict(self._angle)
+        ideal = self.rows(first, count)
+        sampled = self.inputs.samples(first, count)
+        held = np.zeros((len(ideal), tree_row_length(self.vehicle.core)))
+        for signal, at in self._numbers.items():
+            if signal.partition("[")[0] not in (ANGLE, CURVATURE, TWIST):
+                held[:, self.vehicle.slot(signal)] = sampled[: len(ideal), MIDDLE, at]
+        given, h = sampled[:, [0, 2]], self.inputs.step_s
+        for hinge in self.scene.hinges:
+            rate = self._rates[hinge.name]
+            if hinge.kind == "prescribed":
+                held[:, rate] = ideal[:, :, rate].mean(axis=1)
+            elif hinge.follows == "angle" and hinge.kind != "coordinated":
+                scratch = np.zeros_like(ideal)
+                if f"{ANGLE}[{hinge.name}]" in self._numbers:
+                    end = self._until(partial(self._follow, hinge, scratch, given[: len(ideal)], first),
+                                      first + len(ideal))
+                    if self.refused:
+                        ideal, held, scratch = (each[: end - first] for each in (ideal, held, scratch))
+                    held[:, self._targets[hinge.name]] = angles[hinge.name] + h * np.cumsum(
+                        scratch[:, :, rate].mean(axis=1))
+        if self._steering is not None:
+            self._coordinate(held, ideal[:, 1], angles, first)
+        return held
+
+    def _coordinate(self, held: np.ndarray, ideal: np.ndarray, before: dict[str, float], first: int) -> None:
+        """Angles and rates of coordinated hinges along the twists at the ends of steps."""
+        assert self._steering is not None
+        slot, h = self.vehicle.slot(TWIST), self.inputs.step_s
+        twists = ideal[:, slot : slot + 3]
+        if len(none := np.flatnonzero(~twists.any(axis=1))):
+            raise self._no_direction(first + int(none[0]))
+        directions = np.array([self._steering.angles(twist) for twist in twists]).reshape(len(twists), -1)
+        for column, hinge in enumerate(self._coordinated):
+            path = np.unwrap(np.concatenate([[before[hinge.name]], directions[:, column]]))
+            if hinge.follows:
+                held[:, self._targets[hinge.name]] = path[1:]
+            else:
+                held[:, self._rates[hinge.name]] = np.diff(path) / h
+            self._angle[hinge.name] = float(path[-1])
+
+
+class SlippingRows:
+    """The outputs of a run, row by row."""
+
+    def __init__(self, scene: Scene, vehicle: SlippingVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
+        self.kept, self._inputs, self._rows = kept, inputs, list[list[float]]()
+        self._origin_of, wheels = Loads(scene).origin_of, scene.wheel_count
+        of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
+        self._values = [_reader(signal, of_hinge, wheels, vehicle) for signal in kept]
+        self._of_commands = any(signal.partition("[")[0] in (ANGLE, CURVATURE, TWIST) for signal in kept)
+        self._place = {name: kept.index(name) for name in ("origin_x_m", "origin_y_m") if name in kept}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def take(self, plant: SlippingPlant, row: np.ndarray, tick: int) -> None:
+        """The outputs at the start of a step, in which `row` acts; forces are those of the step before."""
+        found = plant.outputs()
+        given = self._inputs.held_at(tick) if self._of_commands else {}
+        values = [read(found, row, given) for read in self._values]
+        for name, at in self._place.items():
+            values[at] = self._origin_of(found.motion)[int(name == "origin_y_m")]
+        self._rows.append(values)
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """By signal name."""
+        table = np.array(self._rows, float).reshape(len(self._rows), len(self.kept))
+        return dict(zip(self.kept, table.T.copy(), strict=True))
+
+
+Reader = Callable[[SlippingOutputs, np.ndarray, dict[str, float]], float]
+
+
+def _reader(signal: str, of_hinge: dict[str, int], wheels: int, vehicle: SlippingVehicle) -> Reader:
+    """What reads one signal."""
+    name, _, inside = signal.partition("[")
+    key = inside.removesuffix("]")
+    item = of_hinge[key] if key in of_hinge else int(key) - 1 if key else 0
+    if name in OF_MOTION:
+        return lambda found, row, given: float(getattr(found.motion, name)[item])
+    if name in OF_OUTPUTS:
+        return lambda found, row, given: float(getattr(found, OF_OUTPUTS[name])[item])
+    if name in BEHIND_WHEELS:
+        return lambda found, row, given: float(getattr(found, BEHIND_WHEELS[name])[wheels + item])
+    if name == "velocity_body_m_per_s":
+        return lambda found, row, given: float(found.motion.velocity_m_per_s[item])
+    if name in (*BOOK, *OF_SUPPLY):
+        return lambda found, row, given: float(getattr(found, name))
+    if name == "heading_wrapped_rad":
+        return lambda found, row, given: wrapped(found.motion.heading_rad)
+    if name in ("x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "energy_J"):
+        return lambda found, row, given: float(getattr(found.motion, name))
+    if name in ("origin_x_m", "origin_y_m"):
+        return lambda found, row, given: math.nan  # which the caller replaces
+    if name in (ANGLE, CURVATURE, TWIST):
+        return lambda found, row, given: given.get(signal, 0.0)
+    slot = vehicle.slot(signal)
+    return lambda found, row, given: float(row[slot])
+
+
+def start_slipping(scene: Scene, vehicle: SlippingVehicle, angles: Sequence[float]) -> SlippingPlant:
+    """The vehicle of a scene at its start."""
+    start = scene.initial
+    try:
+        return vehicle.plant(
+            scene.run.method, scene.run.step_s, velocity_m_per_s=start.velocity_body_m_per_s,
+            yaw_rate_rad_per_s=start.yaw_rate_rad_per_s, x_m=start.x_m, y_m=start.y_m, heading_rad=start.heading_rad,
+            hinge_angle_rad=angles, hinge_rate_rad_per_s=[hinge.start_rate_rad_per_s for hinge in scene.hinges],
+            wheel_speed_rad_per_s=start.wheel_speed_rad_per_s or None)
+    except Refused as refused:
+        raise scene.refusal_in_file(refused, "at t = 0 s") from None
+
+
+@dataclass
+class SlippingRun:
+    """What a run of a scene with hinges on ground with friction leaves."""
+
+    plant: SlippingPlant
+    rows: SlippingRows
+    commands: SlippingCommands
+    seconds: float
+    refused: Refused | None
+
+
+def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) -> SlippingRun:
+    """Steps a scene to its end, or to a step that is refused, with a row before each `every` steps and at the end."""
+    vehicle, inputs = scene.slipping_vehicle(scene.core()), scene.inputs_on_grid()
+    commands = SlippingCommands(scene, vehicle, inputs)
+    plant = start_slipping(scene, vehicle, commands.start_angles())
+    rows, refused = SlippingRows(scene, vehicle, inputs, kept), None
+    last, began = np.zeros(tree_row_length(vehicle.core)), time.perf_counter()
+    try:
+        for first in range(0, inputs.steps, CHUNK):
+            table = commands.held_rows(first, min(CHUNK, inputs.steps - first))
+            last = table[-1] if len(table) else last
+            begin = first
+            while begin < first + len(table):
+                if begin % every == 0:
+                    rows.take(plant, table[begin - first], begin)
+                until = min(first + len(table), (begin // every + 1) * every)
+                plant.follow(table[begin - first : until - first])
+                begin = until
+            moved(len(table))
+            if commands.refused:
+                raise commands.refused
+    except Refused as why:
+        known = str(scene.path) in why.message
+        at_s = f"at t = {plant.steps * scene.run.step_s:g} s"
+        refused = why if known else scene.refusal_in_file(why, at_s)
+        if not plant.steps:
+            raise refused from None
+    if refused is None or len(rows) <= -(-plant.steps // every):
+        rows.take(plant, last, plant.steps)
+    return SlippingRun(plant, rows, commands, time.perf_counter() - began, refused)
