@@ -101,10 +101,10 @@ class ArticulatedBatch(OwnMemory):
 
         A number that a lane's vehicle does not read has no effect."""
         most = max(self.vehicles, key=lambda vehicle: vehicle.body_count)
-        names = self.vehicles[0].names if "[" in str(signal) else most.names
+        names = most.names if isinstance(signal, str) and "[" not in signal else self.vehicles[0].names
         slots = input_slots(self.core, names, signal)
         wheels = max(vehicle.wheel_count for vehicle in self.vehicles)
-        name, _, inside = str(signal).partition("[")
+        name, _, inside = signal.partition("[")
         if name in OF_WHEELS and inside and int(inside.rstrip("]")) > wheels:
             raise BadInput(f"{signal}: there is no such wheel; give 1 to {wheels}")
         stop = slots.start + wheels if name in OF_WHEELS and not inside else slots.stop
@@ -113,7 +113,7 @@ class ArticulatedBatch(OwnMemory):
 
     def set(self, signal: str, value: Any) -> None:
         """Writes a signal of all lanes; BadInput for an array of another shape."""
-        fill(str(signal), self.of(signal), value)
+        fill(signal, self.of(signal), value)
 
     # ---- motion
 

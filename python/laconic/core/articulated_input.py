@@ -20,6 +20,7 @@ PER_HINGE = {"hinge_voltage_V": "hinge_voltage_V", "hinge_torque_Nm": "hinge_tor
              "steering_rate_rad_per_s": "hinge_rate_rad_per_s"}
 """Inputs with one number for each hinge, and the core's names for them."""
 TWIST = "steering_twist"
+LONGEST_NAME = 200  # letters of a signal
 
 
 @cache
@@ -37,7 +38,9 @@ def row_length(core: Core) -> int:
 
 def input_slots(core: Core, names: Sequence[str], signal: str) -> range:
     """The numbers that a signal may set; BadInput where there is no such signal or hinge."""
-    name, _, inside = str(signal).partition("[")
+    if not isinstance(signal, str) or len(signal) > LONGEST_NAME:
+        raise BadInput(f"signal: {shown(signal)} is not the name of an input; give one such as \"voltage_V[1]\"")
+    name, _, inside = signal.partition("[")
     item = inside.removesuffix("]")
     if name in PER_HINGE:
         start, _ = member_of(core, PER_HINGE[name])

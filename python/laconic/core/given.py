@@ -15,7 +15,8 @@ from laconic.errors import shown as shown
 if TYPE_CHECKING:
     from laconic.core import Core
 
-MAKERS = {"input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})", "model": "core.prepare(vehicle)",
+MAKERS = {"articulated_state": "plant.save()",
+          "input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})", "model": "core.prepare(vehicle)",
           "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()",
           "estimate": "estimate.save()",
           "batch_kind": "batch.prepared(vehicle)"}

@@ -79,6 +79,15 @@ def batch() -> laconic.Batch:
     return laconic.Batch(robot(), 4)
 
 
+@cache
+def hinged() -> laconic.ArticulatedVehicle:
+    return laconic.ArticulatedVehicle.of(scene("mir_like"))
+
+
+def hinged_batch() -> laconic.ArticulatedBatch:
+    return laconic.ArticulatedBatch(hinged(), 4)
+
+
 def kept() -> laconic.Filter:
     return laconic.Filter(plant(), {"encoder_std_rad": 0.01, "yaw_rate_std_rad_per_s": 0.01})
 
@@ -156,6 +165,17 @@ SHORT: dict[str, Callable[[Any], Any]] = {
     "Batch's volts": lambda odd: setattr(batch(), "voltage_V", odd), "Batch.run": lambda odd: batch().run(odd),
     "Batch's threads": lambda odd: batch().run(1, odd), "Batch's start": lambda odd: batch().start(odd),
     "Batch's samples": lambda odd: batch().run_sampled(odd), "Batch's refusal": lambda odd: batch().refusal(odd),
+    "ArticulatedBatch": laconic.ArticulatedBatch,
+    "ArticulatedBatch's lanes": lambda odd: laconic.ArticulatedBatch(hinged(), odd),
+    "ArticulatedBatch's kinds": lambda odd: laconic.ArticulatedBatch(hinged(), kind_of=odd),
+    "ArticulatedBatch's method": lambda odd: laconic.ArticulatedBatch(hinged(), 2, odd),
+    "ArticulatedBatch's step": lambda odd: laconic.ArticulatedBatch(hinged(), 2, step_s=odd),
+    "ArticulatedBatch.of": lambda odd: hinged_batch().of(odd),
+    "ArticulatedBatch.set": lambda odd: hinged_batch().set("voltage_V", odd),
+    "ArticulatedBatch.run": lambda odd: hinged_batch().run(odd),
+    "ArticulatedBatch's threads": lambda odd: hinged_batch().run(1, odd),
+    "ArticulatedBatch's refusal": lambda odd: hinged_batch().refusal(odd),
+    "ArticulatedBatch.load": lambda odd: hinged_batch().load(0, odd),
     "Batch.load": lambda odd: batch().load(0, odd), "Batch.change": lambda odd: batch().change(0, odd),
     "make_fmu": lambda odd: laconic.make_fmu(odd, "x.fmu", version=2), "make_fmu's version": lambda odd:
         laconic.make_fmu(scene("s1"), "/dev/null/x.fmu", version=odd),

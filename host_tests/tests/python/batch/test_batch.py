@@ -229,10 +229,13 @@ def test_what_does_not_fit_is_refused_in_one_line(message):
     assert "\n" not in str(caught.value)
 
 
-def test_the_example_of_the_page_prints_what_the_page_says(capsys):
-    (code, printed), = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
-    exec(compile(code, "batch.md", "exec"), {})  # noqa: S102
-    assert capsys.readouterr().out == printed
+def test_the_examples_of_the_page_print_what_the_page_says(capsys):
+    examples = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
+    names = {}
+    for code, printed in examples:
+        exec(compile(code, "batch.md", "exec"), names)  # noqa: S102
+        assert capsys.readouterr().out == printed
+    assert len(examples) == 2
 
 
 # ---- A batch after os.fork(): the threads stayed with the parent, so the child begins new ones.
