@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from laconic.core.articulated import ArticulatedVehicle
-from laconic.core.articulated_input import member_of
+from laconic.core.articulated_input import member_of, row_of_hinges
 from laconic.errors import Refused
 from laconic.tools.analyse.from_core import Subject, nu_rates
 from laconic.tools.derive.brackets import Bracketed
@@ -134,7 +134,7 @@ class RandomMoments:
             "world_force_N": rng.normal(0.0, 2.0, 2), "world_force_point_m": rng.normal(0.0, 0.2, 2),
             "hinge_voltage_V": rng.normal(0.0, 2.0, hinges), "hinge_torque_Nm": rng.normal(0.0, 0.5, hinges),
             "steering_rate_rad_per_s": rng.normal(0.0, 0.5, hinges), "steering_twist": self._origin(twist)}
-        row = vehicle.input_row(signals)
+        row = row_of_hinges(core, vehicle.names, wheels, signals)  # also what this vehicle does not read
         acceleration = rng.normal(0.0, 0.5, hinges)
         for name, value in (("hinge_acceleration_rad_per_s2", acceleration), ("twist_rate", self._origin(twist_rate))):
             start, _ = member_of(core, name)

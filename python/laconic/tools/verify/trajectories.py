@@ -51,7 +51,7 @@ def read_reference(path: Path) -> list[Table]:
     except (ValueError, RecursionError):
         raise BadInput(f"{path}: is no valid JSON: it nests its lists too deeply, or holds a number of thousands of "
                        "digits; give a reference file") from None
-    if isinstance(content, list):  # of vehicles with hinges on ground with friction
+    if isinstance(content, list) and content:  # of vehicles with hinges on ground with friction
         content = {"format": 1, "cases": content}
     if not isinstance(content, dict):
         raise BadInput(f"{path}: contains no object with cases; give a reference file")
