@@ -204,9 +204,15 @@ void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node);
 void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node);
 void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node);
 #else
-#define laconic_node_pose_of(pose, node) laconic_pose_of(pose, &(node)->plant.model, &(node)->plant.state)
-#define laconic_node_wheel_speeds(speed, node) laconic_plant_wheel_speeds(&(node)->plant, speed)
-#define laconic_node_wheel_angles(angle, node) laconic_plant_wheel_angles(&(node)->plant, angle)
+static inline void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node) {
+    laconic_pose_of(pose, &node->plant.model, &node->plant.state);
+}
+static inline void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node) {
+    laconic_plant_wheel_speeds(&node->plant, speed_rad_per_s);
+}
+static inline void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node) {
+    laconic_plant_wheel_angles(&node->plant, angle_rad);
+}
 #endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */

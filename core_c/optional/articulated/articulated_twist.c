@@ -10,7 +10,7 @@ real laconic_articulated_inverse_root(real x) {
 
 laconic_status laconic_articulated_refuse_twist(int32_t hinge, const laconic_articulated_model *m,
                                                 const articulated_drive *drive, laconic_refusal *why) {
-    if (hinge < 0) return refuse(why, LACONIC_TWIST_ZERO, (laconic_field)LACONIC_FIELD_OF_TWIST, 0, R(0), R(0));
+    if (hinge < 1) return refuse(why, LACONIC_TWIST_ZERO, (laconic_field)LACONIC_FIELD_OF_TWIST, 0, R(0), R(0));
     const direction w = twist_at_hinge(&m->link[hinge - 1], drive->twist[0]);
     return refuse(why, LACONIC_TWIST_ZERO, (laconic_field)LACONIC_FIELD_OF_BODY_HINGE, hinge,
                   laconic_root(w.cosine * w.cosine + w.sine * w.sine), R(0));

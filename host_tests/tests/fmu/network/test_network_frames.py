@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from bus_operations import FORMAT_ERROR, ByHand, fd_frame, frame, frames_in, operation
@@ -109,6 +110,13 @@ def as_operations(frames: list[Frame]) -> bytes:
     return b"".join(fd_frame(*each) if len(each[1]) > 8 else frame(*each) for each in frames)
 
 
+def of_any_build(frames: list[Frame]) -> list[tuple[int, Any]]:
+    """Frames without what IDENTITY says of hinges, which the library's node takes and the FMU's does not."""
+    identity = wire()["IDENTITY"]
+    return [(identifier, {key: value for key, value in identity.unpack(data).items() if key not in ("hinges", "crc")}
+             if identifier == ID_BASE + identity.offset else data) for identifier, data in frames]
+
+
 def compare(host: HostNode, fmu: ByHand, script: Iterator[list[Frame]],
             rig: Rig | None = None) -> tuple[int, list[Frame]]:
     """Both hear the same; the numbers of exchanges, and all frames that were sent."""
@@ -119,7 +127,7 @@ def compare(host: HostNode, fmu: ByHand, script: Iterator[list[Frame]],
         until_us = count * PERIOD_US
         answers = host.advance(until_us)
         heard = frames_in(fmu.step(until_us * 1e-6, CAN=as_operations(frames))["CAN"])
-        assert heard == [*host.late, *answers]
+        assert of_any_build(heard) == of_any_build([*host.late, *answers])
         host.late = host.hear(frames)
         if rig is not None:
             rig.heard = host.late
