@@ -248,15 +248,6 @@ def test_an_input_that_would_do_nothing_is_refused_as_in_a_scene(scene: str, inp
         plant.run(inputs)
 
 
-def test_a_voltage_for_a_rigid_wheel_without_a_motor_is_refused() -> None:
-    vehicle = {**{k: v for k, v in ROBOT.items() if k != "body"}, "wheel": [
-        {**FIXED, "x_m": 0.0, "y_m": y, "driven": y > 0} for y in (0.2, -0.2)]}
-    plant = laconic.Vehicle(vehicle).plant(step_s=0.01)
-    plant.run({"voltage_V": [1.0, 0.0]})
-    with pytest.raises(BadInput, match=r"voltage_V\[2\]: would do nothing, wheel 2 has no motor"):
-        plant.run({"voltage_V": [1.0, 1.0]})
-
-
 def test_a_number_that_is_not_finite_is_named_by_its_signal() -> None:
     vehicle = laconic.ArticulatedVehicle.of(laconic.read_scene("frc_swerve_mk4i"))
     plant = vehicle.plant(inputs={"steering_twist": [1.0, 0.0, 0.0]})

@@ -177,10 +177,7 @@ class Plant(OwnMemory):
     def input_of(self, held: Any) -> Any:
         """The laconic_input that is given, or that names and numbers make; BadInput for wheels that are not there."""
         if held is None or isinstance(held, Mapping):
-            made = self.core.input(held, self.wheel_count)
-            if held:
-                self._check_motors(made)
-            return made
+            return self.core.input(held, self.wheel_count)
         if isinstance(held, list | tuple | np.ndarray):
             numbers = np.ravel(held).tolist() if isinstance(held, np.ndarray) else [*held]
             raise BadInput(f'input: {shown(held)} names no signal; give them by its name, such as {{"voltage_V": '
@@ -188,14 +185,6 @@ class Plant(OwnMemory):
         made = c_object(self.core, "input", held)
         check_held(self.core, made, self.wheel_count)
         return made
-
-    def _check_motors(self, made: Any) -> None:
-        """BadInput for a voltage of a wheel that has no motor, whatever the vehicle's are."""
-        vehicle = self.c.vehicle
-        for at in range(self.wheel_count):
-            if made.voltage_V[at] and vehicle.wheel[at].undriven:
-                raise BadInput(f"voltage_V[{at + 1}]: would do nothing, wheel {at + 1} has no motor; give 0, or drive "
-                               f"it by axle_torque_Nm[{at + 1}]")
 
     def outputs(self, held: Any = None) -> Any:
         """The laconic_outputs with the reactions; its `friction` where the vehicle has friction. Input as for `run`.

@@ -165,8 +165,7 @@ def run_case(base: Scene, case: Extreme, core: Core, method: str = "auto") -> di
     case.change(vehicle)
     try:
         plant = core.plant(core.vehicle(vehicle), method, case.step_s, nu_rad_per_s=case.nu)
-        driven = [not wheel.undriven for wheel in plant.c.vehicle.wheel[0 : plant.wheel_count]]
-        plant.run({"voltage_V": [case.voltage_V if each else 0.0 for each in driven]}, case.steps)
+        plant.run({"voltage_V": [case.voltage_V] * plant.wheel_count}, case.steps)
     except Refused as refused:
         return {"outcome": "refused", "why": refused.message}
     except IndexError:
