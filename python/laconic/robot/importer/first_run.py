@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 NUDGE_RAD_PER_S, NUDGE_S = 1e-4, 0.1  # a yaw rate so small that what it becomes is in proportion to it
 GRID_S = 0.01           # of the runs that the import writes
 YIELDS = 0.02           # of that yaw rate, that a robot reaches which is free to turn
-GROWS = 2.0             # a nudge that becomes so much larger shows an unstable motion
+GROWS = 4.0             # a nudge that becomes so much larger spoils the run; less is for the user to see and steer
 SLOWS_S = (0.5, 0.2, 0.1, 0.05)  # times in which gearmotors take a robot's speed
 OFF = 0.05              # of a promised speed or way that a run may miss
 SIGNALS = ("velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad")
