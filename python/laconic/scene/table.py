@@ -55,7 +55,7 @@ def entries_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any
     check_bounds(text)
     return tomllib.loads(text, parse_float=number)
 
-NEAR, VERY_NEAR = 0.6, 0.65  # of letters that two keys share: one may be the other, mistyped
+VERY_NEAR = 0.65  # of letters that two keys share: one may be the other, mistyped
 
 
 class Table:
@@ -110,7 +110,7 @@ class Table:
 
     def _mistyped(self, key: str) -> str:
         """The key that was probably meant to be this one, in words."""
-        typed = self.mistyped(key, NEAR)
+        typed = self.mistyped(key)
         return f" (you wrote {typed}, which is no known key here)" if typed else ""
 
     def mistyped(self, key: str, near: float = VERY_NEAR) -> str:

@@ -26,6 +26,7 @@ from laconic.scene.hinge_signals import (
 from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.table import Table
+from laconic.simulation.folds import Folded, Folds
 from laconic.simulation.loads import Loads
 from laconic.simulation.slipping import USUAL as USUAL_SLIPPING
 from laconic.simulation.steering import Commands
@@ -34,7 +35,6 @@ CHUNK = 2048             # steps whose inputs are made ready at once
 ALLOWED = 1e-9           # of the size of a start: what a projection may change of it by rounding
 IN_SINGLE = 1e-4
 SAME_RATE = 1e-6         # of a rate at the start that the wheels set, too
-FOLDED_RAD = math.pi / 2
 PARTS = 3                # of a step, for the estimate of its error
 OF_DISTANCE = 2.0        # what a method of order 2 makes of a distance of parts of two thirds is 1.8
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
@@ -143,21 +143,6 @@ def _farthest(differences: Any) -> float:
     return float(np.max(np.abs(differences), initial=0.0))
 
 
-@dataclass(frozen=True)
-class Folded:
-    """A trailer that turned by more than a right angle against what draws it."""
-
-    hinge: str
-    first_s: float   # of the rows
-    most_rad: float
-
-    def in_words(self) -> str:
-        """For people."""
-        return (f"{self.hinge} folds: its hinge angle is beyond 90° from t = {self.first_s:g} s on, at most "
-                f"{math.degrees(self.most_rad):.4g}°; a real one would hit what draws it; give stop_low_deg and "
-                "stop_high_deg to end the run there")
-
-
 class Rows:
     """The outputs of a run, row by row."""
 
@@ -170,9 +155,8 @@ class Rows:
         self._accelerates = "acceleration_body_m_per_s2" in names
         self.least_margin: tuple[float, float] | None = None  # N, s
         follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
-        self._trailers = [(at, hinge) for at, (hinge, link) in enumerate(zip(
-            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows]
-        self._folds = dict[str, Folded]()
+        self._folds = Folds([(at, hinge.name) for at, (hinge, link) in enumerate(zip(
+            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows])
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._parts = [(signal, *_split(signal, of_hinge)) for signal in kept]
         self._follows_commands = bool(names & {ANGLE, CURVATURE})
@@ -185,7 +169,7 @@ class Rows:
     def take(self, plant: ArticulatedPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts."""
         motion, given = plant.motion(), self._inputs.held_at(tick) if self._follows_commands else {}
-        self._watch_folds(motion, tick * self._inputs.step_s)
+        self._folds.take(motion.hinge_angle_rad, tick * self._inputs.step_s)
         reactions = None
         if self._of_ground or self._of_load:
             loads = self._loads.of(motion) if self._of_load else None
@@ -196,18 +180,10 @@ class Rows:
         acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
         self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
 
-    def _watch_folds(self, motion: ArticulatedMotion, time_s: float) -> None:
-        """Notes trailers beyond a right angle, and how far they come."""
-        for at, hinge in self._trailers:
-            angle = abs(wrapped(float(motion.hinge_angle_rad[at])))
-            if angle > FOLDED_RAD or hinge.name in self._folds:
-                seen = self._folds.setdefault(hinge.name, Folded(hinge.name, time_s, angle))
-                self._folds[hinge.name] = Folded(hinge.name, seen.first_s, max(seen.most_rad, angle))
-
     @property
     def folded(self) -> tuple[Folded, ...]:
         """Trailers that folded."""
-        return tuple(self._folds.values())
+        return self._folds.found()
 
     def _value(self, part: tuple[str, str, int], motion: ArticulatedMotion, reactions: ArticulatedReactions | None,
                acceleration: np.ndarray, row: np.ndarray, given: dict[str, float]) -> float:

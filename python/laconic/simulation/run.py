@@ -35,7 +35,6 @@ from laconic.scene.signals import (
 )
 from laconic.scene.table import Table
 from laconic.simulation.articulated import (
-    Folded,
     HingedRun,
     HingeErrors,
     Rows,
@@ -44,6 +43,7 @@ from laconic.simulation.articulated import (
     run_with_hinges,
     usual_signals_with_hinges,
 )
+from laconic.simulation.folds import Folded
 from laconic.simulation.slipping import SlippingRun, run_slipping
 from laconic.simulation.steering import Limited
 
@@ -248,9 +248,9 @@ def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, e
     if found.refused and len(rows):
         ticks[-1] = plant.steps
     run = Trajectory(scene, plant.method, plant.steps, found.seconds, ticks * scene.run.step_s, rows.columns(),
-                     refused=found.refused, limited=tuple(found.commands.limited.values()))
+                     refused=found.refused, limited=tuple(found.commands.limited.values()), folded=rows.folded)
     if isinstance(rows, Rows):
-        run.folded, run.least_margin = rows.folded, rows.least_margin
+        run.least_margin = rows.least_margin
     if isinstance(plant, SlippingPlant):
         run.slip_loss_J = slip_loss_of(plant)
     if isinstance(found, HingedRun) and found.parts and len(rows):

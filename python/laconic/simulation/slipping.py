@@ -22,6 +22,7 @@ from laconic.errors import Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, BOOK, CURVATURE, OF_SUPPLY, TWIST
 from laconic.scene.inputs import InputsOnGrid
+from laconic.simulation.folds import Folded, Folds
 from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
@@ -123,6 +124,8 @@ class SlippingRows:
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._values = [_reader(signal, of_hinge, wheels, vehicle) for signal in kept]
         self._of_commands = any(signal.partition("[")[0] in (ANGLE, CURVATURE, TWIST) for signal in kept)
+        self._folds = Folds([(at, hinge.name) for at, hinge in enumerate(scene.hinges)
+                             if hinge.kind == "free" and hinge.form != "caster"])
         self._place = {name: kept.index(name) for name in ("origin_x_m", "origin_y_m") if name in kept}
 
     def __len__(self) -> int:
@@ -131,11 +134,17 @@ class SlippingRows:
     def take(self, plant: SlippingPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts; forces are those of the step before."""
         found = plant.outputs()
+        self._folds.take(found.motion.hinge_angle_rad, tick * self._inputs.step_s)
         given = self._inputs.held_at(tick) if self._of_commands else {}
         values = [read(found, row, given) for read in self._values]
         for name, at in self._place.items():
             values[at] = self._origin_of(found.motion)[int(name == "origin_y_m")]
         self._rows.append(values)
+
+    @property
+    def folded(self) -> tuple[Folded, ...]:
+        """Trailers that folded."""
+        return self._folds.found()
 
     def columns(self) -> dict[str, np.ndarray]:
         """By signal name."""

@@ -1,0 +1,47 @@
+"""Trailers that fold: which a run reports, as nothing in the equations stops them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from laconic.core.spelling import wrapped
+
+FOLDED_RAD = math.pi / 2.0
+
+
+@dataclass(frozen=True)
+class Folded:
+    """A trailer that turned by more than a right angle against what draws it."""
+
+    hinge: str
+    first_s: float   # of the rows
+    most_rad: float
+
+    def in_words(self) -> str:
+        """For people."""
+        return (f"{self.hinge} folds: its hinge angle is beyond 90° from t = {self.first_s:g} s on, at most "
+                f"{math.degrees(self.most_rad):.4g}°; a real one would hit what draws it; give stop_low_deg and "
+                "stop_high_deg to end the run there")
+
+
+class Folds:
+    """Watches free hinges that are no casters, by their numbers and names, row by row."""
+
+    def __init__(self, trailers: Sequence[tuple[int, str]]):
+        self._trailers, self._seen = trailers, dict[str, Folded]()
+
+    def take(self, hinge_angle_rad: Sequence[float] | np.ndarray, time_s: float) -> None:
+        """Notes trailers beyond a right angle, and how far they come."""
+        for at, name in self._trailers:
+            angle = abs(wrapped(float(hinge_angle_rad[at])))
+            if angle > FOLDED_RAD or name in self._seen:
+                seen = self._seen.setdefault(name, Folded(name, time_s, angle))
+                self._seen[name] = Folded(name, seen.first_s, max(seen.most_rad, angle))
+
+    def found(self) -> tuple[Folded, ...]:
+        """Those that folded."""
+        return tuple(self._seen.values())
