@@ -241,6 +241,21 @@ def test_columns_of_wheels_are_known_by_their_names(names, quantity, unit, tmp_p
     assert found["time"]["column"] == names[0]
 
 
+@pytest.mark.parametrize(("bits", "ticks_per_row"), [(8, 12.75), (8, 20.4), (8, 25.0), (9, 17.0), (11, 68.0),
+                                                     (16, 900.0)])
+@pytest.mark.parametrize("least", [0, -1], ids=["from 0", "signed"])
+def test_a_fast_counter_is_guessed_with_its_size(bits: int, ticks_per_row: float, least: int, tmp_path, capsys):
+    size = 1 << bits
+    counts = [int(ticks_per_row * row) % size for row in range(400)]
+    if least:
+        counts = [count - size if count >= size // 2 else count for count in counts]
+    rows = [f"{0.05 * row:.2f},{count},{count},{0.01 * row},0,0" for row, count in enumerate(counts)]
+    log = tmp_path / "counts.csv"
+    log.write_text("t,left,right,x,y,heading\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    assert run(["logs", str(log)]) == 0
+    assert f"wrap = {size}\n" in capsys.readouterr().out
+
+
 def test_an_encoder_log_of_our_own_is_guessed_with_its_wrap(tmp_path, capsys):
     """Of 16 bits, as simulate writes it for a scene with such encoders."""
     rows = motion(400)

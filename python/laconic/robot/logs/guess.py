@@ -248,11 +248,16 @@ def _enter(found: Guess, columns: Mapping[str, np.ndarray], quantity: str, unit:
         found.notes.append(f"{quantity}: metres become angles by the scene's radius; radius_m gives another one")
     if quantity == "wheel_angle":
         values = [columns[name][~np.isnan(columns[name])] for name in names]
-        if unit == "tick" and all(map(_are_increments, values)):
+        wraps = [wrap for each in values if (wrap := wrap_of(each, unit)) is not None]
+        if unit == "tick" and not wraps and all(map(_are_increments, values)):
             entry["kind"] = "increments"
-        elif wraps := [wrap for each in values if (wrap := wrap_of(each, unit)) is not None]:
+            found.notes.append(f"{quantity}: the columns look like ticks since the row before; take kind out if they "
+                               "are counters")
+        elif wraps:
             entry["wrap"] = int(max(wraps)) if max(wraps) % 1.0 == 0.0 else max(wraps)
-            found.notes.append(f"{quantity}: the columns begin again after {max(wraps):.9g}")
+            most = max(float(np.ptp(each)) for each in values)
+            found.notes.append(f"{quantity}: the columns begin again, probably after {max(wraps):.9g}, as they span "
+                               f"{most:.9g}; correct wrap if the counter has another size")
     found.entries[quantity] = entry
     found.meaning |= dict.fromkeys(names, f"{quantity} [{unit}]")
     found.wheels = found.wheels or tuple(names)

@@ -12,10 +12,11 @@ from laconic.errors import BadInput
 from laconic.robot.logs.units import TICK
 
 TURNS = {"rad": 2.0 * np.pi, "deg": 360.0, "turn": 1.0}
-COUNTERS = tuple(float(1 << bits) for bits in (8, 10, 12, 13, 14, 15, 16, 18, 20, 24, 32))
+COUNTERS = tuple(float(1 << bits) for bits in (*range(8, 25), 32))
 TOLERANCE = 2e-3        # of a turn: angles are written with few decimals
 UNCERTAIN = 0.45        # of the wrap, from one sample to the next: the direction may be the other one
 MANY = 20.0             # times the usual step: a jump, in a column whose unit is not known
+SEVERAL = 4.0           # times the usual step: a jump there, too, where it comes again by the same size
 REMEDY = "record more often, or count with a larger wrap"
 SMALL = 4.0             # steps around a jump that a counter's size may be off by
 
@@ -97,14 +98,16 @@ def _jump(steps: np.ndarray, span: float, turn: float) -> int | None:
     if len(moving) < 2 or not span > 0.0:
         return None
     usual = float(np.median(np.abs(steps[moving])))
-    least = min(0.5 * turn, MANY * usual)
+    least, found = min(0.5 * turn, SEVERAL * usual), list[int]()
     for number, index in enumerate(moving):
-        size = abs(steps[index])
-        if size < 0.5 * span or size < least:
+        if abs(steps[index]) < max(0.5 * span, least):
             continue
         around = [steps[moving[other]] for other in (number - 1, number + 1) if 0 <= other < len(moving)]
         if all(np.sign(each) == -np.sign(steps[index]) for each in around):
-            return int(index)
+            found.append(int(index))
+    sizes = np.abs(steps[found])
+    if len(found) and (sizes[0] >= min(0.5 * turn, MANY * usual) or (len(found) > 1 and np.ptp(sizes) <= 2.0 * usual)):
+        return found[0]
     return None
 
 
@@ -113,7 +116,7 @@ def _size(steps: np.ndarray, jump: int, values: np.ndarray, turn: float) -> floa
     others = np.delete(np.abs(steps), jump)
     near = SMALL * float(np.median(others[others > 0.0])) if (others > 0.0).any() else 0.0
     span, size = float(np.ptp(values)), abs(float(steps[jump]))
-    for each in sorted({turn, *TURNS.values(), *COUNTERS}):
+    for each in sorted({*TURNS.values(), *COUNTERS} | ({turn} if np.isfinite(turn) else set())):
         if span <= each * (1.0 + TOLERANCE) and abs(each - size) <= max(near, TOLERANCE * each):
             return each
     return None
