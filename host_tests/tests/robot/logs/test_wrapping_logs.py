@@ -178,6 +178,16 @@ def test_one_row_that_was_lost_at_speed_is_named(tmp_path, capsys):
             "which may be 60 %, so its direction is uncertain") in " ".join(remarks)
 
 
+def test_a_gap_in_which_a_counter_passes_half_its_range_is_named(tmp_path, capsys):
+    rows, gear = seldom(0.2, count=200)
+    rows = np.delete(rows, [100, 101, 102], axis=0)
+    unit = f'[wheel_angle]\nunit = "tick"\nticks_per_turn = {TICKS}\ngear_ratio = {gear!r}\nwrap = true'
+    log = csv(tmp_path / "run.csv", rows)
+    remarks = " ".join(replayed(capsys, log, mapped(tmp_path, TEXT_MAP, change=[("[wheel_angle]", unit)]))["remarks"])
+    assert "line 102: wheel " in remarks and "in one row, but by the pose by " in remarks
+    assert " of 196 rows" not in remarks  # that row alone
+
+
 @pytest.mark.parametrize("fast", [
     (0.03, 0.02, 0.05), (-0.03, 0.01, 0.04), (0.02, -0.03, -0.06), (0.02, -0.01, -0.06)])
 def test_a_wheel_that_contradicts_the_others_by_a_part_of_its_range_is_named(tmp_path, fast):

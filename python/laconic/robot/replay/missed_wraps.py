@@ -20,6 +20,7 @@ from laconic.scene import Scene
 HALF = 0.5       # of the range: a turn that is longer is read as another one
 MISSED = 0.6     # of the range, that the evidence must differ by: a whole one, less what evidence is off
 AROUND = 2       # rows before and after one, in whose middle the evidence counts: single ones may be noise
+GAP = 2.0        # times the usual time between rows
 AGREES = 0.05    # of the range: wheels that are right fit each other so well
 CLEARLY = 0.2    # of the range, that wheels must contradict each other by
 
@@ -41,7 +42,7 @@ def _remark(scene: Scene, log: Log) -> str | None:
     turned = np.diff(log.wheel_angle_rad, axis=0) / log.counter.wrap_rad
     for what, expected in _evidence(scene, log):
         share = expected / log.counter.wrap_rad
-        off = _middle(share - turned)
+        off = np.where(_gaps(log), share - turned, _middle(share - turned))
         rows = (np.abs(off) > MISSED) & (np.abs(share) > HALF - AGREES)
         if rows.any():
             row = int(np.argmax(rows.any(axis=1)))
@@ -58,6 +59,12 @@ def _words(log: Log, row: int, wheel: int, turned: float, instead: str, rows: in
     return (f"{counter.place(row + 1)}: wheel {wheel + 1} turns by {100.0 * turned:.0f} % of {counter.said} in one "
             f"row, but {instead}{more}; a counter does not show more than half its range in a row, so its motion is "
             f"wrong; {REMEDY}")
+
+
+def _gaps(log: Log) -> np.ndarray:
+    """Rows that come much later than usual: a wheel turns further in them, so each one counts by itself."""
+    steps = np.diff(log.time_s)
+    return (steps > GAP * np.median(steps))[:, None]
 
 
 def _middle(rows: np.ndarray) -> np.ndarray:
