@@ -84,6 +84,21 @@ def test_the_order_of_the_wheels_comes_from_their_names(tmp_path, capsys):
     assert path_error(capsys, rosbag2(tmp_path / "run", rows, messages), scene_of(tmp_path)) < 2e-5
 
 
+def test_a_table_of_wheel_angles_says_more_of_the_joints_than_their_names(tmp_path, capsys):
+    messages = Messages()
+    rows = drive(messages)
+    for _, topic, _, message in rows:
+        if topic == "/joint_states":
+            message.position[:] = np.array([-5.0, 5.0]) * message.position
+            message.velocity = np.zeros(0)
+    log, scene = rosbag2(tmp_path / "run", rows, messages), scene_of(tmp_path)
+    text = f'{USUAL}pose = "/mocap/pose"\n[wheel_angle]\n'
+    mapping = mapped(tmp_path, text + "signs = [-1, 1]\ngear_ratio = 5\n")
+    assert path_error(capsys, log, scene, "--map", mapping) < 2e-5
+    error = refused(capsys, log, scene, "--map", mapped(tmp_path, text + "nonsense = 3\n"))
+    assert "wheel_angle.nonsense: is no known key here" in error
+
+
 @pytest.mark.parametrize("stamps,late_s", [("header", 0.0), ("arrival", 0.3)])
 def test_a_map_chooses_whose_instants_count(stamps, late_s, tmp_path):
     messages = Messages()

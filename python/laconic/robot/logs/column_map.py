@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
@@ -96,7 +96,9 @@ def map_of(table: Table) -> ColumnMap:
     if form == "bag":
         quantities |= shorthand(table)
     for each in QUANTITIES:
-        if table.has(each) and each not in quantities:
+        if each in PER_WHEEL and each in quantities and table.has(each):
+            quantities[each] = _of_joints(table.table(each), quantities[each], form)
+        elif table.has(each) and each not in quantities:
             inner = table.table(each)
             found = yaw_rate_of(inner, form) if each == YAW_RATE else quantity_of(
                 inner, each, None if each == STEERING else count, form)
@@ -135,6 +137,13 @@ def _metadata(table: Table) -> str:
     file = inner.text("file")
     inner.done()
     return file
+
+
+def _of_joints(inner: Table, joints: Quantity, form: str) -> Quantity:
+    """What a table says of wheels whose columns `joints` names: signs, gears, wrap."""
+    entries = {"columns": list(joints.columns), "unit": joints.units[0]} | inner.plain()
+    return replace(quantity_of(Table(inner.path, inner.location, entries), joints.name, len(joints.columns), form),
+                   is_optional=joints.is_optional)
 
 
 def _recognise(table: Table) -> dict[str, Any]:
