@@ -19,15 +19,16 @@ static void hang_follower(laconic_articulated_vehicle *v, double trail) {
     const int b = v->body_count + 1, parent = choice(3) == 0 ? choice(b) : 0;
     const double kg = choice(3) == 0 ? 0 : pow(10, uniform(-1, 1.5));
     const double off = choice(2) == 0 ? trail : uniform(0, 0.3);
-    hang_body(v, parent, LACONIC_HINGE_FREE, uniform(-0.5, 0.5), uniform(-0.3, 0.3), kg, kg * uniform(0, 0.02), -off,
-              choice(2) == 0 ? 0 : uniform(-0.02, 0.02));
+    const double x = uniform(-0.5, 0.5), y = uniform(-0.3, 0.3), inertia = kg * uniform(0, 0.02);
+    hang_body(v, parent, LACONIC_HINGE_FREE, x, y, kg, inertia, -off, choice(2) == 0 ? 0 : uniform(-0.02, 0.02));
     const double half = choice(2) == 0 ? 0 : 0.2;
     for (int k = 0; k < (half > 0 ? 2 : 1); k++)
         hang_wheel(v, b, -trail, k == 0 ? half : -half, choice(2) == 0 ? 0 : 1e-3);
 }
 
 static laconic_articulated_vehicle short_tree(void) {
-    laconic_articulated_vehicle v = carriage(uniform(5, 30), uniform(0.1, 1), uniform(-0.2, 0.2), uniform(-0.05, 0.05));
+    const double mass = uniform(5, 30), inertia = uniform(0.1, 1), ahead = uniform(-0.2, 0.2);
+    laconic_articulated_vehicle v = carriage(mass, inertia, ahead, uniform(-0.05, 0.05));
     const int bodies = 1 + choice(3);
     if (choice(4) != 0)
         for (int k = 0; k < 2; k++) hang_wheel(&v, 0, 0, k == 0 ? 0.2 : -0.2, 0.01);
@@ -44,8 +45,9 @@ static double energy_of(const laconic_articulated_model *m, const laconic_articu
     return (double)motion_of(m, s).energy_J;
 }
 
-/* What rounding may add in so many steps: speeds of the wheels' bodies are differences of lengths over the trail. */
-static double by_rounding(int steps) { return EITHER(1e-15, 2e-6) * (steps + 3) * 0.5 / shortest; }
+/* What rounding may add in so many steps: speeds of the wheels' bodies are differences of lengths over the trail, each of
+ * which is rounded some times in a step's parts. */
+static double by_rounding(int steps) { return EITHER(2e-15, 2e-6) * (steps + 3) * 0.5 / shortest; }
 
 /* Takes steps of one size, each of which keeps the energy or is refused by the name of a body. Returns how many. */
 static int steps_that_keep(const laconic_articulated_model *m, const laconic_articulated_start *start, double step_s) {
@@ -74,7 +76,8 @@ static void undriven_trees_with_short_trails_keep_their_energy_or_name_the_body(
     for (int n = 0; n < (int)LONG_RUN(wanted_trees); n++) {
         const laconic_articulated_vehicle v = short_tree();
         laconic_articulated_model m;
-        laconic_articulated_start start = start_at(uniform(-2, 2), 0, uniform(-1, 1));
+        const double velocity = uniform(-2, 2);
+        laconic_articulated_start start = start_at(velocity, 0, uniform(-1, 1));
         for (int b = 0; b < LACONIC_MAX_BODIES; b++) start.hinge_angle_rad[b] = REAL(uniform(-3, 3));
         memset(&m, 0, sizeof m);
         if (laconic_articulated_prepare(&m, &v, &refusal) != LACONIC_OK) continue;

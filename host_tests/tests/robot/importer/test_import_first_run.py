@@ -52,7 +52,7 @@ def test_a_robot_with_a_rear_caster_is_damped_so_that_it_turns_left_as_its_line_
     assert any("and then turn it to the left" in each for each in found.assumptions)
     damping = next(each for each in found.assumptions if DAMPED in each)
     assert f"{scene.vehicle['motor_damping_Nms']:g} N·m·s" in damping
-    assert "mm behind the axle, by the way it goes" in damping and "-fold by the end of the run" in damping
+    assert "mm behind the axle in the direction of travel" in damping and "-fold by the end of the run" in damping
     columns = goes(scene)
     half = len(columns["yaw_rate_rad_per_s"]) // 2
     assert (columns["yaw_rate_rad_per_s"][half:] > 0.4).all()
@@ -96,5 +96,5 @@ def test_a_robot_that_no_motor_of_its_wheels_holds_is_called_unstable_in_one_lin
     found, _ = imported(tmp_path, text, hinges=False)
     assert any("this force takes the place of front" in each for each in found.assumptions)
     unstable = [each for each in found.remarks if "the first run is unstable: a small turn grows" in each]
-    assert len(unstable) == 1 and "mm behind the axle, by the way it goes" in unstable[0]
+    assert len(unstable) == 1 and "mm behind the axle in the direction of travel" in unstable[0]
     assert unstable[0] in found.text

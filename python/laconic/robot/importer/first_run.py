@@ -122,7 +122,7 @@ def _instability(growth: float, wheels: Sequence[FoundWheel], com_m: Array, way:
     behind_m = float((middle - com_m[:2]) @ way)
     if behind_m <= 0.0:
         return grows
-    return f"{grows}, as the centre of mass lies {1e3 * behind_m:.3g} mm behind the axle, by the way it goes"
+    return f"{grows}, as the centre of mass lies {1e3 * behind_m:.3g} mm behind the axle in the direction of travel"
 
 
 def damped(ground: Ground, mass_kg: float, driven: Collection[str], slows_s: float) -> Ground:
