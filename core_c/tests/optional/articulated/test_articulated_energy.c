@@ -45,8 +45,8 @@ static double energy_of(const laconic_articulated_model *m, const laconic_articu
     return (double)motion_of(m, s).energy_J;
 }
 
-/* What rounding may add in so many steps: speeds of the wheels' bodies are differences of lengths over the trail, each of
- * which is rounded some times in a step's parts. */
+/* What rounding may add in so many steps: speeds of the wheels' bodies are differences of lengths over the trail, which
+ * are rounded some times in the parts of a step. */
 static double by_rounding(int steps) { return EITHER(2e-15, 2e-6) * (steps + 3) * 0.5 / shortest; }
 
 /* Takes steps of one size, each of which keeps the energy or is refused by the name of a body. Returns how many. */
