@@ -19,6 +19,7 @@ from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.fmu.hinges import left_out
 from laconic.robot.bags.messages import store
+from laconic.scene.base import BaseTable, joint_names
 from laconic.scene.scene_text import lines_of
 
 REFERENCE = Path(__file__).parents[1] / "data" / "articulated_reference.json"
@@ -242,11 +243,17 @@ def test_a_bag_of_a_run_with_hinges_has_their_joints_and_odometry_of_the_carriag
                     for connection, _, raw in bag.messages()}
         assert ("/odom" in topics) == has_odometry
         joints, count = last["/joint_states"], scene.wheel_count
-        assert list(joints.name[count:]) == [f"{hinge.name}_joint" for hinge in scene.hinges]
+        assert list(joints.name[count:]) == [f"{hinge.name}_hinge_joint" for hinge in scene.hinges]
         assert np.array_equal(joints.position[count:], end.columns_of("hinge_angle_rad")[-1])
         assert np.array_equal(joints.velocity[count:], end.columns_of("hinge_rate_rad_per_s")[-1])
         if has_odometry:
             assert last["/odom"].pose.pose.position.x == pytest.approx(end.columns["origin_x_m"][-1], abs=1e-3)
+
+
+def test_joints_of_hinges_have_one_name_in_bags_and_on_ros_2_and_the_base_of_the_scene_may_give_others() -> None:
+    assert joint_names(None, 1, ["fork"]) == ["wheel_1_joint", "fork_hinge_joint"]
+    for given, found in ((("left",), ["left", "fork_hinge_joint"]), (("left", "swivel"), ["left", "swivel"])):
+        assert joint_names(BaseTable(joint_names=given), 1, ["fork"]) == found
 
 
 def test_verify_of_a_scene_and_enclosures_refuse_hinges(capsys: pytest.CaptureFixture[str]) -> None:

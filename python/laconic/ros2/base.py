@@ -17,7 +17,7 @@ from laconic.can.play.vehicle import moved_inertia
 from laconic.errors import BadInput, Refused
 from laconic.ros2.motion import Lanes, Motion, Seen, Singles, motion_of, product
 from laconic.scene import Scene
-from laconic.scene.base import BaseTable, has_motor, usual_joints
+from laconic.scene.base import BaseTable, has_motor, joint_names
 
 BANDWIDTH_RAD_PER_S = 20.0  # of a wheel's speed, where the scene gives no gain: 50 ms, as small bases have
 SHARE_OF_STEP = 0.1         # the bandwidth is at most this over the step
@@ -110,7 +110,7 @@ class Base:
     @property
     def joint_names(self) -> list[str]:
         """Of the joints in `Seen`: wheels, then hinges."""
-        return list(self.table.joint_names) or usual_joints(self.wheel_count)
+        return joint_names(self.table, self.wheel_count, [hinge.name for hinge in self.scene.hinges])
 
     @property
     def signals(self) -> list[str]:

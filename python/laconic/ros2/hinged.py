@@ -357,13 +357,6 @@ class HingedBase(Base):
         return HingedOdometry(self.believed, self._measured)
 
     @property
-    def joint_names(self) -> list[str]:
-        """As in Base."""
-        names = super().joint_names
-        return names if len(names) > self.wheel_count else [*names, *(f"{each.name}_hinge_joint"
-                                                                      for each in self.scene.hinges)]
-
-    @property
     def signals(self) -> list[str]:
         """As in Base."""
         return [*super().signals, *self._steering_signals]

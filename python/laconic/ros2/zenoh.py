@@ -66,7 +66,7 @@ def config_of(router: str, listen: str, is_local: bool) -> Any:
                            "unset the variable") from None
     made = zenoh.Config()
     own = listen or ("tcp/127.0.0.1:0" if is_local else "tcp/[::]:0")
-    for key, value in (("mode", '"peer"'), ("connect/endpoints", f'["{router}"]'), ("connect/timeout_ms", "0"),
+    for key, value in (("mode", '"peer"'), ("connect/endpoints", f'["{router}"]'), ("connect/timeout_ms", "-1"),
                        ("connect/exit_on_failure", "false"), ("listen/endpoints", f'["{own}"]'),
                        ("scouting/multicast/enabled", "false"), ("timestamping/enabled", "true")):
         try:

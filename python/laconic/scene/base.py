@@ -5,7 +5,7 @@ What is not given gets its value in laconic.ros2.base, where the vehicle's matri
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -59,6 +59,12 @@ def read_base(table: Table, vehicle: Mapping[str, Any]) -> BaseTable:
 def usual_joints(count: int) -> list[str]:
     """Names of the wheels' joints where nobody gave others."""
     return [f"wheel_{number}_joint" for number in range(1, count + 1)]
+
+
+def joint_names(base: BaseTable | None, wheel_count: int, hinges: Sequence[str]) -> list[str]:
+    """Names of the joints in messages: of wheels, then of hinges. What `[base]` does not name has usual ones."""
+    names = list(base.joint_names) if base and base.joint_names else usual_joints(wheel_count)
+    return names if len(names) > wheel_count else [*names, *(f"{name}_hinge_joint" for name in hinges)]
 
 
 def has_motor(vehicle: Mapping[str, Any]) -> bool:

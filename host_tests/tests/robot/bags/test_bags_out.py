@@ -202,7 +202,7 @@ STEERED_MAP = """format = "bag"
 [wheel_angle]
 columns = ["/joint_states.position[wheel_1_joint]"]
 [steering_angle]
-columns = ["/joint_states.position[front_joint]"]
+columns = ["/joint_states.position[front_hinge_joint]"]
 [pose]
 topic = "/ground_truth/odom"
 """

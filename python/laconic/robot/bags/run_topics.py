@@ -20,7 +20,7 @@ from laconic.robot.bags.messages import store
 from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
 from laconic.ros2 import FRAMES
 from laconic.scene import Scene
-from laconic.scene.base import usual_joints
+from laconic.scene.base import joint_names
 
 COMMITTED_AT_ONCE = 2000       # messages
 BYTES_OF_CHUNK = 1 << 18
@@ -248,8 +248,7 @@ class RunTopics:
     def __init__(self, scene: Scene, bag: BagWriter):
         self.scene, self.bag = scene, bag
         self.types = store().types
-        names = scene.base.joint_names if scene.base else ()
-        self.joints = [*(names or usual_joints(scene.wheel_count)), *(f"{hinge.name}_joint" for hinge in scene.hinges)]
+        self.joints = joint_names(scene.base, scene.wheel_count, [hinge.name for hinge in scene.hinges])
         core, carriage = scene.core(), carriage_of(scene)
         self._centre = centre_of_mass(core, core.vehicle(carriage))
         self._rolling = _rolling(scene, carriage)
