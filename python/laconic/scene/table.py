@@ -55,7 +55,8 @@ def entries_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any
     check_bounds(text)
     return tomllib.loads(text, parse_float=number)
 
-VERY_NEAR = 0.65  # of letters that two keys share: one may be the other, mistyped
+
+NEAR = 0.65  # of letters that two keys share: one may be the other, mistyped
 
 
 class Table:
@@ -113,10 +114,10 @@ class Table:
         typed = self.mistyped(key)
         return f" (you wrote {typed}, which is no known key here)" if typed else ""
 
-    def mistyped(self, key: str, near: float = VERY_NEAR) -> str:
+    def mistyped(self, key: str) -> str:
         """The unread key that was probably meant to be this one; "" for none."""
         unread = [entry for entry in self._entries if entry not in self._known | self._expected]
-        return next(iter(difflib.get_close_matches(key, unread, n=1, cutoff=near)), "")
+        return next(iter(difflib.get_close_matches(key, unread, n=1, cutoff=NEAR)), "")
 
     def value(self, key: str, default: Any, kinds: tuple[type, ...], what: str) -> Any:
         """A value of one of some kinds, which `what` names in the message."""

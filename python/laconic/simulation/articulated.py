@@ -26,7 +26,7 @@ from laconic.scene.hinge_signals import (
 from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.table import Table
-from laconic.simulation.folds import Folded, Folds
+from laconic.simulation.kept_rows import KeptRows, parts_of
 from laconic.simulation.loads import Loads
 from laconic.simulation.slipping import USUAL as USUAL_SLIPPING
 from laconic.simulation.steering import Commands
@@ -143,28 +143,24 @@ def _farthest(differences: Any) -> float:
     return float(np.max(np.abs(differences), initial=0.0))
 
 
-class Rows:
-    """The outputs of a run, row by row."""
+class Rows(KeptRows):
+    """The outputs of a run on ideal ground."""
 
     def __init__(self, scene: Scene, vehicle: ArticulatedVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
-        self.kept, self._inputs = kept, inputs
-        self._loads, self._rows = Loads(scene), list[list[float]]()
+        follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
+        super().__init__(kept, [(at, hinge.name) for at, (hinge, link) in enumerate(zip(
+            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows])
+        self._inputs, self._loads = inputs, Loads(scene)
         names = {signal.partition("[")[0] for signal in kept}
         self._of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
         self._of_load = "no_slip_margin_N" in names or bool(scene.vehicle["friction_coefficient"])
         self._accelerates = "acceleration_body_m_per_s2" in names
         self.least_margin: tuple[float, float] | None = None  # N, s
-        follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
-        self._folds = Folds([(at, hinge.name) for at, (hinge, link) in enumerate(zip(
-            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows])
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
-        self._parts = [(signal, *_split(signal, of_hinge)) for signal in kept]
+        self._parts = [(signal, *parts_of(signal, of_hinge)) for signal in kept]
         self._follows_commands = bool(names & {ANGLE, CURVATURE})
         acting = input_signals(scene.vehicle, scene.hinges).keys() - {ANGLE, CURVATURE}
         self._slots = {signal: vehicle.slot(signal) for signal, name, _ in self._parts if name in acting}
-
-    def __len__(self) -> int:
-        return len(self._rows)
 
     def take(self, plant: ArticulatedPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts."""
@@ -179,11 +175,6 @@ class Rows:
             self.least_margin = reactions.no_slip_margin_N, tick * self._inputs.step_s
         acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
         self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
-
-    @property
-    def folded(self) -> tuple[Folded, ...]:
-        """Trailers that folded."""
-        return self._folds.found()
 
     def _value(self, part: tuple[str, str, int], motion: ArticulatedMotion, reactions: ArticulatedReactions | None,
                acceleration: np.ndarray, row: np.ndarray, given: dict[str, float]) -> float:
@@ -209,18 +200,6 @@ class Rows:
         if name in (ANGLE, CURVATURE):
             return given.get(signal, 0.0)
         return float(row[self._slots[signal]])
-
-    def columns(self) -> dict[str, np.ndarray]:
-        """By signal name."""
-        table = np.array(self._rows, float).reshape(len(self._rows), len(self.kept))
-        return dict(zip(self.kept, table.T.copy(), strict=True))
-
-
-def _split(signal: str, of_hinge: dict[str, int]) -> tuple[str, int]:
-    name, _, inside = signal.partition("[")
-    item = inside.removesuffix("]")
-    return name, of_hinge[item] if item in of_hinge else int(item) - 1 if item else 0
-
 
 def given_start(scene: Scene, vehicle: ArticulatedVehicle) -> dict[str, Any]:
     """The numbers of a scene's start, as ArticulatedVehicle.plant takes them."""

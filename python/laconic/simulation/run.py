@@ -43,7 +43,7 @@ from laconic.simulation.articulated import (
     run_with_hinges,
     usual_signals_with_hinges,
 )
-from laconic.simulation.folds import Folded
+from laconic.simulation.kept_rows import Folded
 from laconic.simulation.slipping import SlippingRun, run_slipping
 from laconic.simulation.steering import Limited
 

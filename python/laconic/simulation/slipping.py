@@ -22,7 +22,7 @@ from laconic.errors import Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, BOOK, CURVATURE, OF_SUPPLY, TWIST
 from laconic.scene.inputs import InputsOnGrid
-from laconic.simulation.folds import Folded, Folds
+from laconic.simulation.kept_rows import KeptRows, parts_of
 from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
@@ -115,21 +115,18 @@ class SlippingCommands(Commands):
             self._angle[hinge.name] = float(path[-1])
 
 
-class SlippingRows:
-    """The outputs of a run, row by row."""
+class SlippingRows(KeptRows):
+    """The outputs of a run on ground with friction."""
 
     def __init__(self, scene: Scene, vehicle: SlippingVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
-        self.kept, self._inputs, self._rows = kept, inputs, list[list[float]]()
+        super().__init__(kept, [(at, hinge.name) for at, hinge in enumerate(scene.hinges)
+                                if hinge.kind == "free" and hinge.form != "caster"])
+        self._inputs = inputs
         self._origin_of, wheels = Loads(scene).origin_of, scene.wheel_count
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._values = [_reader(signal, of_hinge, wheels, vehicle) for signal in kept]
         self._of_commands = any(signal.partition("[")[0] in (ANGLE, CURVATURE, TWIST) for signal in kept)
-        self._folds = Folds([(at, hinge.name) for at, hinge in enumerate(scene.hinges)
-                             if hinge.kind == "free" and hinge.form != "caster"])
         self._place = {name: kept.index(name) for name in ("origin_x_m", "origin_y_m") if name in kept}
-
-    def __len__(self) -> int:
-        return len(self._rows)
 
     def take(self, plant: SlippingPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts; forces are those of the step before."""
@@ -141,25 +138,13 @@ class SlippingRows:
             values[at] = self._origin_of(found.motion)[int(name == "origin_y_m")]
         self._rows.append(values)
 
-    @property
-    def folded(self) -> tuple[Folded, ...]:
-        """Trailers that folded."""
-        return self._folds.found()
-
-    def columns(self) -> dict[str, np.ndarray]:
-        """By signal name."""
-        table = np.array(self._rows, float).reshape(len(self._rows), len(self.kept))
-        return dict(zip(self.kept, table.T.copy(), strict=True))
-
 
 Reader = Callable[[SlippingOutputs, np.ndarray, dict[str, float]], float]
 
 
 def _reader(signal: str, of_hinge: dict[str, int], wheels: int, vehicle: SlippingVehicle) -> Reader:
     """What reads one signal."""
-    name, _, inside = signal.partition("[")
-    key = inside.removesuffix("]")
-    item = of_hinge[key] if key in of_hinge else int(key) - 1 if key else 0
+    name, item = parts_of(signal, of_hinge)
     if name in OF_MOTION:
         return lambda found, row, given: float(getattr(found.motion, name)[item])
     if name in OF_OUTPUTS:

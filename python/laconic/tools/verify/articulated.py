@@ -6,7 +6,6 @@ Within a step the core has rates and twists as cubics, so polynomials up to that
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from laconic.core.articulated import CARRIAGE, HINGES, ArticulatedPlant, Articul
 from laconic.core.articulated_input import member_of
 from laconic.errors import BadInput, Refused
 from laconic.scene.table import Table
-from laconic.tools.verify.trajectories import decimal, error_of, held_of, steps_of
+from laconic.tools.verify.trajectories import decimal, error_of, held_of, steps_of, worst_of
 
 STATE = (("velocity", "velocity"), ("pose", "pose"), ("psi", "hinge_angle"), ("hinge_rate", "hinge_rate"),
          ("chi", "wheel"))
@@ -47,7 +46,7 @@ class ArticulatedResult:
     @property
     def worst(self) -> float:
         """The largest of the errors; infinite when the case was refused."""
-        return math.inf if self.status != "ok" else max(each for each in self.errors if each is not None)
+        return worst_of(self.status, self.errors)
 
 
 def vehicle_table(case: Table) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from laconic.core.slipping import SlippingPlant, SlippingVehicle
 from laconic.errors import BadInput, Refused
 from laconic.scene import MOST_STEPS
 from laconic.scene.table import Table
-from laconic.tools.verify.trajectories import step_that_fits
+from laconic.tools.verify.trajectories import step_that_fits, worst_of
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,7 @@ class SlippingResult:
     @property
     def worst(self) -> float:
         """The largest of the errors; infinite when the case was refused."""
-        known = [each for each in self.errors if each is not None]
-        return math.inf if self.status != "ok" else max(known)
+        return worst_of(self.status, self.errors)
 
 
 def is_slipping(case: Table) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -35,8 +35,12 @@ class CaseResult:
     @property
     def worst(self) -> float:
         """The largest of the three errors; infinite when the case was refused."""
-        errors = (self.error_nu, self.error_pose, self.error_wheel)
-        return math.inf if self.status != "ok" else max(e for e in errors if e is not None)
+        return worst_of(self.status, (self.error_nu, self.error_pose, self.error_wheel))
+
+
+def worst_of(status: str, errors: Iterable[float | None]) -> float:
+    """The largest of a case's errors that are known; infinite when the case was refused."""
+    return math.inf if status != "ok" else max(each for each in errors if each is not None)
 
 
 def read_reference(path: Path) -> list[Table]:

@@ -1,4 +1,4 @@
-"""Trailers that fold: which a run reports, as nothing in the equations stops them."""
+"""What runs with hinges keep on every ground: rows of outputs, and trailers that fold, as nothing stops them."""
 
 from __future__ import annotations
 
@@ -45,3 +45,30 @@ class Folds:
     def found(self) -> tuple[Folded, ...]:
         """Those that folded."""
         return tuple(self._seen.values())
+
+
+class KeptRows:
+    """The outputs of a run, row by row; `trailers` are watched for folds."""
+
+    def __init__(self, kept: Sequence[str], trailers: Sequence[tuple[int, str]]):
+        self.kept, self._rows, self._folds = kept, list[list[float]](), Folds(trailers)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def folded(self) -> tuple[Folded, ...]:
+        """Trailers that folded."""
+        return self._folds.found()
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """By signal name."""
+        table = np.array(self._rows, float).reshape(len(self._rows), len(self.kept))
+        return dict(zip(self.kept, table.T.copy(), strict=True))
+
+
+def parts_of(signal: str, of_hinge: dict[str, int]) -> tuple[str, int]:
+    """A signal's name, and the item of its array that it is."""
+    name, _, inside = signal.partition("[")
+    item = inside.removesuffix("]")
+    return name, of_hinge[item] if item in of_hinge else int(item) - 1 if item else 0
