@@ -15,7 +15,7 @@ MADE_LATER = re.compile(r"^\.|^__pycache__$|\.egg-info$|^(build|dist)\b")  # wha
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 GROUPS = {  # the parts of the manual, in the order in which a reader needs them
     "Start": ("tutorial", "how-to"),
-    "Guides": ("scenes", "articulated", "import", "sensors", "fmu-importers", "fmu", "fmu-network", "rig",
+    "Guides": ("scenes", "articulated", "import", "sensors", "fmu-importers", "fmu", "rig",
                "rig-ports", "play", "play-drives", "ros2", "logs", "bags",
                "control", "c", "python", "sweep", "batch", "page"),
     "Reference": ("reference-commands", "reference-scene", "signals", "reference-c", "reference-python",

@@ -1,4 +1,4 @@
-"""The demo of docs/fmu-network.md: a vehicle, a CAN bus and a controller, each an FMU, connected by FMI-LS-BUS.
+"""The demo of docs/fmu-importers.md: a vehicle, a CAN bus and a controller, each an FMU, connected by FMI-LS-BUS.
 
     python -m laconic.fmu.bus_demo FOLDER
 

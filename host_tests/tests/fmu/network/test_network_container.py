@@ -1,4 +1,4 @@
-"""The demo of docs/fmu-network.md: vehicle, bus and controller in the FMU toolbox's container, and joined by FMPy."""
+"""The demo of docs/fmu-importers.md: vehicle, bus and controller in the FMU toolbox's container, and joined by FMPy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fmu_manipulation_toolbox.assembly import Assembly
 from laconic.base.paths import SOURCE_DIR
 from laconic.fmu.bus_demo import SETPOINT_RAD_PER_S, demo, main
 
-PAGE = (SOURCE_DIR / "docs" / "fmu-network.md").read_text(encoding="utf-8")
+PAGE = (SOURCE_DIR / "docs" / "fmu-importers.md").read_text(encoding="utf-8")
 UNTIL_S = 0.2
 
 
