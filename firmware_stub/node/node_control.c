@@ -193,6 +193,9 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
 #if LACONIC_NODE_WITH_HINGES
     laconic_node_drop_hinges(node);
 #endif
+#if LACONIC_NODE_WITH_XCP
+    laconic_xcp_adopt(node, &new->vehicle);
+#endif
     node->start = new->start;
     node->model_is_wrong = false;
     node->state = LACONIC_WIRE_STATE_READY;

@@ -88,6 +88,9 @@ static void adopt(laconic_node *node, const laconic_node_hinges *found) {
     node->pending &= ~PENDING_NOT_OF_HINGES;
     count_in_plant(node);
     node->start = node->loader.parameters.start;
+#if LACONIC_NODE_WITH_XCP
+    laconic_xcp_adopt(node, &node->loader.parameters.vehicle);
+#endif
 #if LACONIC_NODE_WITH_DRIVES
     node->drive_plan = node->loader.parameters.drives;
 #endif
