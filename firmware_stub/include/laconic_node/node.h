@@ -121,7 +121,8 @@ typedef struct laconic_node_hinges {
  * next step, as soon as its last byte has come: laconic_plant_change() prepares the whole vehicle anew and may refuse.
  * The master then gets an error and the node keeps its numbers; a RESULT to CALIBRATE names status, field and item.
  * While the node runs on the reference, the working page may be inconsistent: SET_CAL_PAGE checks it. Writing a number
- * that is already there changes no bit of it. Vehicles with hinges can be read, but not calibrated.
+ * that is already there changes no bit of it. Counts, and kinds and places of wheels, can be read, but not written;
+ * the same holds for all numbers of vehicles with hinges.
  *
  * Measurement: dynamic lists; event 0 is each step, 1 and 2 are the first steps at or behind each 10 and 100 ms. Stamps
  * are step count · step in microseconds: integers, the same in lockstep and free run. In lockstep steps wait for room

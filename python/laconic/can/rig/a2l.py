@@ -10,12 +10,11 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from laconic.base.paths import SOURCE_DIR
-from laconic.can.rig.parameters import in_use
 from laconic.can.rig.wire import ID_BASE, wire
-from laconic.core import Field
+from laconic.core.fields import WHEEL
+from laconic.core.plant import PLACED_BY
 from laconic.scene import Scene
 from laconic.scene.reference import unit_of
 
@@ -122,6 +121,7 @@ class Number:
     type: str = "FLOAT32_IEEE"
     low: float = -LARGEST
     high: float = LARGEST
+    stays: bool = False  # the node does not let a master write it
 
 
 def identification() -> str:
@@ -138,7 +138,7 @@ def a2l_text(scene: Scene, id_base: int = ID_BASE) -> str:
              *interface(scene, id_base), '    /begin MOD_COMMON ""', "      BYTE_ORDER MSB_LAST", "    /end MOD_COMMON",
              *(line for unit in units for line in method(unit)), *layouts()]
     for each in numbers:
-        lines += characteristic(each, scene.has_hinges or each.name.endswith("_count"))
+        lines += characteristic(each, scene.has_hinges or each.stays)
     for each in measured:
         lines += measurement(each)
     return "\n".join([*lines, "  /end MODULE", "/end PROJECT", ""])
@@ -149,31 +149,24 @@ def a2l_text(scene: Scene, id_base: int = ID_BASE) -> str:
 
 def parameters(scene: Scene) -> Iterator[Number]:
     """The numbers of the vehicle that a master may write, and its counts."""
-    core = scene.core()
-    vehicle, words = base_of(scene), descriptions()
-    for field in core.fields:
+    there, words = of_items(scene), descriptions()
+    for field in scene.core().fields:
         if field.root != "vehicle" or field.table == "vehicle.motor" or EACH * field.number >= SEGMENT:
             continue
-        for k in range(1 if field.items == 0 else used(field, vehicle)):
+        for k in range(there.get(field.table, max(1, field.items))):
             name = f"{field.name}_{k + 1}" if field.items else field.name
             low, high = LIMITS.get(field.rule, (-LARGEST, LARGEST))
             kind = "FLOAT32_IEEE"
             if field.kind != "REAL":
                 kind, (low, high) = "ULONG", INTEGERS[field.kind]
             name, text = (name.replace("undriven", "driven"), words.get(field.name, field.name))
-            yield Number(name, text, unit_of(field.name), PARAMETERS + EACH * field.number + 4 * k, kind, low, high)
+            yield Number(name, text, unit_of(field.name), PARAMETERS + EACH * field.number + 4 * k, kind, low, high,
+                         field.counts or (field.table == WHEEL and field.key in PLACED_BY))
 
 
-def base_of(scene: Scene) -> Any:
-    """The laconic_vehicle, with hinges that of the carriage."""
-    core = scene.core()
-    return scene.articulated_vehicle(core).c.base if scene.has_hinges else scene.c_vehicle(core)
-
-
-def used(field: Field, vehicle: Any) -> int:
-    """How many items of a field the vehicle has."""
-    found = in_use(field, vehicle)
-    return field.items if found is None else int(found)
+def of_items(scene: Scene) -> dict[str, int]:
+    """Table of the vehicle → how many of it there are."""
+    return {f"vehicle.{table}[#]": len(scene.vehicle[table]) for table in ("wheel", "support")}
 
 
 def outputs(scene: Scene) -> Iterator[Number]:
@@ -188,7 +181,7 @@ def outputs(scene: Scene) -> Iterator[Number]:
 
 def named_outputs(scene: Scene) -> dict[str, list[tuple[str, str, str]]]:
     """Signal of SELECT → names, texts and units of its numbers."""
-    wheels = base_of(scene).wheel_count
+    wheels = scene.wheel_count
     found = {signal: [of_frame(frame, each) for each in signals] for signal, (frame, signals) in SINGLE.items()}
     for signal, (frame, stem) in OF_WHEELS.items():
         found[signal] = [of_frame(frame, stem, k) for k in range(wheels)]
