@@ -137,6 +137,10 @@ def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
     ("LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_ESTIMATE=1", "LACONIC_NODE_WITH_DRIVES=0"),
     ("LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_ESTIMATE=1"),
     ("LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_DRIVES=0", "LACONIC_SINGLE"),
+    ("LACONIC_NODE_WITH_XCP=1",),
+    ("LACONIC_NODE_WITH_XCP=1", "LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_ESTIMATE=1"),
+    ("LACONIC_NODE_WITH_XCP=1", "LACONIC_SINGLE", "LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_DRIVES=0",
+     "LACONIC_WITH_FRICTION=0", "LACONIC_NODE_CAN_FD=0"),
     ("LACONIC_SINGLE", "LACONIC_NODE_CAN_FD=0", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=1")], ids=" ".join)
 def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[str, ...]) -> None:
     assert compiled(compiler, *definitions) == ""
