@@ -17,6 +17,7 @@ import can
 import numpy as np
 import pytest
 
+from laconic.base.paths import SOURCE_DIR
 from laconic.can.rig.a2l import EACH, OUTPUTS, PARAMETERS, SEGMENT, a2l_text, outputs, parameters
 from laconic.can.rig.boards import own_node, why_no_emulation
 from laconic.can.rig.buses import NodeOnBus, connected, node_in_process, node_process
@@ -361,6 +362,24 @@ def pump_until(ended: threading.Event, node: NodeClient, end: NodeOnBus) -> None
         end.pump()
         while node.link.bus.recv(0) is not None:
             pass
+
+
+def test_the_program_of_docs_rig_ports_md_calibrates_a_node(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pyxcp")
+    page = (SOURCE_DIR / "docs/rig-ports.md").read_text(encoding="utf-8")
+    program = re.search(r"```python\n(import struct\nfrom pyxcp.*?)```", page, re.DOTALL)
+    assert program is not None
+    with node_process("double", ID_BASE, "--shared") as port, \
+            connected("slcan", f"socket://127.0.0.1:{port}") as node:
+        load_scene(node, read_scene("s1"))
+        node.start_free_run(watchdog_ms=0)
+        exec(program[1].replace(":4000", f":{port}"), {})
+        assert "laconic_2" in capsys.readouterr().out
+        master = Master(node)
+        master.wait(deque(), 0.2)  # what the program has heard on the same bus
+        master.answers.clear()
+        master.ask(0xFF, 0)
+        assert master.read(addresses(SCENE)["mass_kg"]) == 12.5
 
 
 def test_pyxcp_calibrates_and_measures_a_node_process() -> None:
