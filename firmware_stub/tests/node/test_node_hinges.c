@@ -280,7 +280,8 @@ static void a_plain_vehicle_after_one_with_hinges_moves_by_the_plant(void) {
     load_tricycle(&prescribed);
     select_bits(0, 0, 0, 7, 15);
     bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
-    for (size_t k = 0; k < 21; k++) {
+    for (uint8_t wheel = 1; wheel <= 2; wheel++) send_rolling(wheel);
+    for (size_t k = 0; common[k].field != LACONIC_WIRE_FIELD_BODY_COUNT; k++) {
         const bool of_third = common[k].item == 3;
         const parameter two = INTEGER(WHEEL_COUNT, 0, 2);
         if (!of_third) send_parameter(common[k].field == two.field ? &two : &common[k]);
