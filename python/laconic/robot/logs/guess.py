@@ -48,6 +48,7 @@ class Guess:
     missing: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     wheels: tuple[str, ...] = ()      # names of the wheels' columns or joints
+    faults: list[str] = field(default_factory=list)  # of the file itself
 
 
 def guess_table(columns: Mapping[str, np.ndarray], texts: Mapping[str, str]) -> Guess:
