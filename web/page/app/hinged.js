@@ -48,6 +48,10 @@ class Hung {
     return this.robot.commands;
   }
 
+  get steps() {
+    return this.robot.steps;
+  }
+
   get limited() {
     return this.robot.limited;
   }
@@ -132,7 +136,7 @@ function cornersOf(/** @type {Part} */ part, /** @type {Part[]} */ parts, /** @t
   ];
 }
 
-/** How far the carriage reaches; of a long train half of all. */
+/** How far the carriage reaches; of a long train a third of all. */
 function sizeOf(/** @type {Part[]} */ parts) {
   /** @type {number[][]} */
   const places = [];
@@ -141,7 +145,7 @@ function sizeOf(/** @type {Part[]} */ parts) {
     places[k] = [x + at[0], y + at[1]];
     return Math.max(0.05, ...corners.map(([cx, cy, r]) => Math.hypot(places[k][0] + cx, places[k][1] + cy) + r));
   });
-  return Math.max(far[0], Math.max(...far) / 2);
+  return Math.max(far[0], Math.max(...far) / 3);
 }
 
 /** Bodies with wheels away from their hinge: where their axles went, and when one folded. */

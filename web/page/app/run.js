@@ -97,16 +97,16 @@ export class Run {
     return this.steps * this.step_s;
   }
 
-  /** What acts from now on, also recorded. */
+  /** What acts from now on, recorded unless it is refused. */
   set(/** @type {Record<string, number>} */ signals) {
     if (sameSignals(signals, this.signals)) return;
+    const input = inputOf(signals, this.main.robot.wheelCount);
+    for (const { robot } of this.actors) robot.setInput(input);
+    this.reference?.robot.setInput(input);
     this.signals = { ...signals };
     const last = this.changes.at(-1);
     if (last && last.t_s === this.time_s) last.signals = this.signals;
     else this.changes.push({ t_s: this.time_s, signals: this.signals });
-    const input = inputOf(this.signals, this.main.robot.wheelCount);
-    for (const { robot } of this.actors) robot.setInput(input);
-    this.reference?.robot.setInput(input);
   }
 
   /** Takes steps and notes path and velocities; throws what the core refuses. */
@@ -120,10 +120,18 @@ export class Run {
     }
   }
 
+  /** All take as many steps as the robot does: a refusal may end them early. */
   take(/** @type {number} */ steps) {
-    for (const { robot } of this.actors) robot.run(steps);
-    this.reference?.robot.run(steps * this.parts);
-    this.steps += steps;
+    const [{ robot }, ...others] = this.actors,
+      begin = robot.steps;
+    try {
+      robot.run(steps);
+    } finally {
+      const taken = robot.steps - begin;
+      this.steps += taken;
+      for (const other of others) other.robot.run(taken);
+      this.reference?.robot.run(taken * this.parts);
+    }
   }
 
   note() {
