@@ -357,7 +357,8 @@ class _Steering:
         if not 0.0 < largest < math.inf:
             return np.zeros(3)
         scaled = twist / largest
-        return np.asarray(scaled / np.linalg.norm(scaled * (1.0, 1.0, self._size_m)))
+        ahead, aside, yaw = (scaled * (1.0, 1.0, self._size_m)).tolist()
+        return np.asarray(scaled / math.sqrt(ahead * ahead + aside * aside + yaw * yaw))  # the same bits everywhere
 
     def _directions(self, twist: np.ndarray) -> np.ndarray:
         """Velocity at each hinge as a complex number, for one twist or many."""
