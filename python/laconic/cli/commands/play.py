@@ -15,7 +15,6 @@ from laconic.cli.options import (
     OutputFile,
     SceneName,
     check_step,
-    check_storage,
     goes_with,
     json_flag,
     one_of,
@@ -84,7 +83,6 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     from laconic.can.play.session import play
 
     check_step(step_s)
-    check_storage(given["bag"], given["storage"])
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")
