@@ -16,6 +16,7 @@ from laconic.scene.scene_text import value_text
 
 FEWEST_WHEELS, MOST_WHEELS = 2, 8
 HALF_TURN_DEG = 50.0
+FEWEST_ROWS = 20  # in which nanoseconds are never all below a millisecond
 STEPS = 20.0      # of a usual size in the range of a column that counts on
 TIMES = ("t", "time", "timestamp", "stamp", "clock", "sec", "secs", "seconds")
 TRUE = {"true", "truth", "gt", "mocap", "vicon", "optitrack", "tracker", "marker", "camera", "ground", "qualisys",
@@ -117,8 +118,12 @@ def _time(found: Guess, columns: Mapping[str, np.ndarray], texts: Mapping[str, s
             mate = next((other for other, others in by_words.items() if others[:-1] == words[:-1] and others
                          and others[-1] in ("sec", "secs", "seconds", "s")), None)
             if mate is not None:
-                found.entries["time"] = {"columns": [mate, name], "units": ["s", "ns"]}
-                found.meaning |= {mate: "time [s]", name: "time [ns]"}
+                most = float(np.nanmax(np.abs(columns[name]), initial=0.0))
+                unit = "us" if 1e3 <= most < 1e6 and len(columns[name]) > FEWEST_ROWS else "ns"
+                found.entries["time"] = {"columns": [mate, name], "units": ["s", unit]}
+                found.meaning |= {mate: "time [s]", name: f"time [{unit}]"}
+                if unit != "ns":
+                    found.notes.append(f"time: {name} is always less than 10^6, so it is taken for {unit}")
                 return
     from laconic.robot.logs.sources import is_date
 
