@@ -20,7 +20,16 @@ from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
 from laconic.robot.logs.text_table import metadata_number, metadata_of
 from laconic.robot.logs.units import LATITUDE, OF_QUANTITY, OF_WHEEL, TICK, of_tread
-from laconic.robot.logs.wraps import TURNS, continuous, doubt_of, folded, modulus_of, refuse_jumps, said_of
+from laconic.robot.logs.wraps import (
+    TURNS,
+    continuous,
+    doubt_of,
+    folded,
+    hidden_wraps,
+    modulus_of,
+    refuse_jumps,
+    said_of,
+)
 
 HALF_TURN = np.pi
 PARTS = ("x", "y", "heading")     # of a pose
@@ -155,7 +164,9 @@ class _Reader:
                 self.remarks += [doubt] if doubt else []
             elif modulus is not None:
                 found[rows, index], doubt = continuous(self.source.path, name, column, modulus, unit, place, said)
-                self.remarks += [doubt] if doubt else []
+                hidden = hidden_wraps(name, column, found[rows, index], self.source.time_s[rows], place,
+                                      (modulus, said))
+                self.remarks += [each for each in (doubt, hidden) if each]
                 if quantity.name == STEERING:  # an absolute encoder above half its range stands on the other side
                     found[rows, index] -= modulus * np.round(found[rows[0], index] / modulus)
             elif quantity.wrap is None:
