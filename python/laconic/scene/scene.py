@@ -294,8 +294,7 @@ def scene_of(top: Table) -> Scene:
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
         sensors=parts["sensors"], base=parts["base"], frc=parts["frc"], ardupilot=parts["ardupilot"],
-        in_degrees=parts["in_degrees"],
-        hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
+        in_degrees=parts["in_degrees"], hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
 
 
 def with_found_step(scene: Scene) -> Scene:

@@ -10,11 +10,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from laconic.can.play.vehicle import moved_inertia
 from laconic.core.articulated import CARRIAGE, ArticulatedMotion
 from laconic.core.spelling import wrapped
 from laconic.errors import BadInput
-from laconic.ros2.base import Loop, driven_wheels, loop_with
+from laconic.ros2.base import Loop, driven_wheels, loop_of
 from laconic.scene import Scene
 from laconic.scene.base import BaseTable, has_motor
 from laconic.scene.drives import SET_SPEED, ArduPilotTable, Channel
@@ -204,10 +203,7 @@ class Outputs:
         if scene.slips_on_hinges:
             raise BadInput(f"{scene.path}: ardupilot: {SET_SPEED} is not played for hinges on ground with friction "
                            "yet; set voltages")
-        driven, core = driven_wheels(scene), scene.core()
-        vehicle = scene.articulated_vehicle(core).c.base if scene.has_hinges else scene.c_vehicle(core)
-        inertia = moved_inertia(scene, [*driven, *(False for _ in scene.hinges)])
-        return loop_with(scene, scene.base or BaseTable(), driven, vehicle, inertia)
+        return loop_of(scene, scene.base or BaseTable())
 
     def _input_of(self, signal: str) -> str:
         if self._loop is None or not signal.startswith(SET_SPEED):
