@@ -1,5 +1,5 @@
-/* A vehicle with hinges on ground with friction as an FMU model for Co-Simulation: parameters and inputs as the importer
- * set them, the core's vehicle, and outputs that are computed when they are read. Plain data. */
+/* A vehicle with hinges on ground with friction as an FMU model for Co-Simulation: parameters and inputs as the
+ * importer set them, the core's vehicle, and outputs that are computed when they are read. Plain data. */
 #ifndef LACONIC_FMU_SLIPPING_MODEL_H
 #define LACONIC_FMU_SLIPPING_MODEL_H
 

@@ -27,6 +27,8 @@ from laconic.simulation.slipping import SlippingCommands
 
 VARIANTS = {"fmi2": (2, False), "fmi3": (3, False), "fmi3-scalar": (3, True)}
 EVERY_VARIANT = pytest.mark.parametrize("variant", VARIANTS)
+ONE_IN_ORDINARY_RUNS = pytest.mark.parametrize("variant", [
+    "fmi3", *(pytest.param(each, marks=pytest.mark.nightly) for each in ("fmi2", "fmi3-scalar"))])
 BOTH = pytest.mark.parametrize("version", [2, 3])
 OF_WHEELS, PLAIN = ("voltage_V", "axle_torque_Nm", "body_force_N"), ("body_moment_Nm",)
 OF_HINGES = ("hinge_voltage_V", "hinge_torque_Nm", "steering_rate_rad_per_s", "steering_angle_rad")
@@ -106,15 +108,16 @@ def variable_of(name: str) -> str:
     return "hinge_rad" if name == "hinge_angle_rad" else name
 
 
-@EVERY_VARIANT
-@pytest.mark.parametrize("name", ["rich", "frc_swerve_mk4i", "tugger_train"])
+@pytest.mark.parametrize(("name", "variant"), [("rich", "fmi2"), ("rich", "fmi3"), ("frc_swerve_mk4i", "fmi3-scalar"),
+                                               ("tugger_train", "fmi3")])
 def test_a_run_in_an_importer_has_the_bits_of_simulate(name: str, variant: str, tmp_path: Path) -> None:
     same_bits(name, variant, tmp_path)
 
 
 @pytest.mark.nightly
 @EVERY_VARIANT
-@pytest.mark.parametrize("name", ["f1tenth", "tricycle_agv", "mir_like", "pr2_base", "wheel_loader", "wheelchair"])
+@pytest.mark.parametrize("name", ["rich", "f1tenth", "frc_swerve_mk4i", "tricycle_agv", "mir_like", "pr2_base",
+                                  "tugger_train", "wheel_loader", "wheelchair"])
 def test_runs_of_the_other_robots_have_the_bits_of_simulate(name: str, variant: str, tmp_path: Path) -> None:
     same_bits(name, variant, tmp_path)
 
@@ -150,7 +153,7 @@ def test_the_carriage_with_everything_slips_stops_and_reaches_its_limits() -> No
         assert np.abs(ran[name]).max() > 0.0, name
 
 
-@EVERY_VARIANT
+@ONE_IN_ORDINARY_RUNS
 def test_fmpy_validates_it_without_a_message_and_it_offers_co_simulation_alone(variant: str, tmp_path: Path) -> None:
     fmu = made(rich(), variant, tmp_path)
     assert validate_fmu(str(fmu)) == []
@@ -184,7 +187,7 @@ def drive(importer: Importer, first: int, last: int) -> None:
         assert importer.step(k * 0.002, 0.002) == OK, importer.log
 
 
-@EVERY_VARIANT
+@ONE_IN_ORDINARY_RUNS
 def test_a_saved_state_and_its_bytes_continue_with_the_same_bits(variant: str, tmp_path: Path) -> None:
     fmu = made(rich(), variant, tmp_path)
     with Importer(fmu) as one, Importer(fmu) as other:
