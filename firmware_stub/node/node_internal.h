@@ -189,6 +189,7 @@ laconic_status laconic_node_restart_hinges(laconic_node *node, laconic_refusal *
 /* SELECT: whether the present vehicle has all that it chooses; the bits of hinges. */
 bool laconic_node_may_select_hinges(const laconic_node *node, const uint8_t *data);
 void laconic_node_select_hinges(laconic_node *node, const uint8_t *data);
+void laconic_node_deselect_hinges(laconic_node *node);
 void laconic_node_publish_hinges(laconic_node *node);
 void laconic_node_clear_hinge_inputs(laconic_node *node);
 /* Three numbers of STEERING; false iff they are not for this vehicle. */

@@ -3,6 +3,7 @@
 #define BENCH_H
 
 #include "laconic_dbc.h"
+#include "laconic_node/crc.h"
 #include "laconic_node/node.h"
 #include "laconic_node/protection.h"
 
@@ -59,6 +60,15 @@ static inline uint8_t bench_control(uint8_t command, uint16_t rate, uint16_t wat
             if (laconic_wire[k].key == LACONIC_WIRE_KEY_RUN) sent[k] = 0;
     }
     return status;
+}
+
+/* The status of COMMIT; its field and item stay in `data`. */
+static inline uint8_t bench_commit(uint8_t data[LACONIC_FRAME_BYTES]) {
+    const struct laconic_dbc_commit_t frame = {.frame_count = node.loader.frame_count,
+                                               .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
+    laconic_dbc_commit_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_COMMIT, data);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
 }
 
 static inline uint8_t bench_start_lockstep(void) { return bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 0, 0); }

@@ -144,10 +144,10 @@ for name, library in loaded:
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names of plugins meet in ELF alone")
 @pytest.mark.parametrize("order", [
-    ("usual", "single", "four"), pytest.param(("single", "four", "usual"), marks=pytest.mark.nightly),
-    pytest.param(("four", "usual", "single"), marks=pytest.mark.nightly)])
+    ("usual", "single", "four"), ("single", "four", "usual"), ("four", "usual", "single")])
 def test_plugins_with_other_builds_in_one_process_call_their_own_functions(order, libraries):
     (libraries / "plugin.c").write_text(PLUGIN, encoding="utf-8")
     for name, options in PLUGINS.items():
