@@ -373,6 +373,4 @@ uint8_t laconic_xcp_copy_page(laconic_node *node, const uint8_t *command) {
     return error;
 }
 
-#else
-typedef int laconic_node_has_no_xcp_memory; /* a file without a declaration is no C */
 #endif
