@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import struct
+import sys
 import threading
 import time
 import zlib
@@ -290,6 +291,12 @@ def test_a_run_of_the_rig_goes_on_while_a_master_is_refused() -> None:
 
 
 # ---- pyxcp
+
+
+@pytest.fixture(autouse=True)
+def _no_arguments(monkeypatch: pytest.MonkeyPatch) -> None:
+    """pyxcp reads the options of the program that imports it."""
+    monkeypatch.setattr(sys, "argv", sys.argv[:1])
 
 
 def px_master(interface: str, channel: str, policy: Any) -> Any:
