@@ -8,8 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from laconic.base.paths import build_dir
-from laconic.scene import rigid_scene_names
+from laconic.base.paths import build_dir, scene_names
 from laconic.scene.methods import EXPLICIT, STIFF_4
 from laconic_build.page.browser import Browser
 
@@ -45,7 +44,7 @@ def test_it_opens_from_disk_in_one_file_without_network_and_has_the_native_cores
 @pytest.mark.nightly
 def test_every_scene_of_the_project_can_be_chosen_and_runs(page):
     offered = page.js("return [...document.getElementById('robot').options].map((each) => each.value)")
-    assert sorted(offered) == sorted([*rigid_scene_names(), "own"])
+    assert sorted(offered) == sorted([*scene_names(), "own"])
     for name in offered:
         page.choose("robot", name)
         step(page, 3)
