@@ -59,6 +59,18 @@ class Samples(Protocol):
         """Values (step, start|middle|end, signal) of some steps."""
 
 
+class LiveInputs:
+    """Inputs of the coming step, in the place of those that a scene gives for a run."""
+
+    def __init__(self, signals: Sequence[str], step_s: float):
+        self.signals, self.step_s = tuple(signals), step_s
+        self.values = np.zeros(len(signals))
+
+    def samples(self, first: int, count: int) -> np.ndarray:
+        """The same at start, middle and end of each step."""
+        return np.broadcast_to(self.values, (count, 3, len(self.values)))
+
+
 @dataclass
 class Commands:
     """The rows of inputs of a run, in order; `limited` fills as they are made, `refused` says what ends the run."""
