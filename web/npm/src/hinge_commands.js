@@ -25,10 +25,29 @@ export function angleOf(x, y) {
   let t = whole > 0 ? y / whole : 0;
   for (let k = 0; k < 3; k++) t = t / (1 + Math.sqrt(1 + t * t));
   const square = t * t;
-  let series = 0;
-  for (let k = 15; k > 0; k -= 2) series = 1 / k - square * series;
-  const angle = 16 * (t * series);
+  let sum = 0;
+  for (let k = 15; k > 0; k -= 2) sum = 1 / k - square * sum;
+  const angle = 16 * (t * sum);
   return x < 0 ? (y < 0 ? -Math.PI : Math.PI) - angle : angle;
+}
+
+/**
+ * The tangent of an angle below a right angle, in the same way: sine over cosine of an eighth by their series, doubled
+ * three times.
+ * @param {number} angle
+ */
+export function tangentOf(angle) {
+  const eighth = angle / 8;
+  let t = (eighth * series(eighth, 13)) / series(eighth, 12);
+  for (let k = 0; k < 3; k++) t = (2 * t) / (1 - t * t);
+  return t;
+}
+
+/** Of sin(x)/x by odd powers up to a last one, of cos(x) by even ones. @param {number} x @param {number} last */
+function series(x, last) {
+  let found = 1;
+  for (let k = last; k > 1; k -= 2) found = 1 - (x * x * found) / (k * (k - 1));
+  return found;
 }
 
 function isZero(/** @type {number[]} */ twist) {
@@ -94,7 +113,7 @@ export class Commands {
       );
     if (!(Math.abs(angle) < Math.PI / 2))
       throw new Refused("steering_angle_rad", `is ${angle}; give less than a right angle`, "out of range", angle);
-    return this.ofCurvature(Math.tan(angle) / base);
+    return this.ofCurvature(tangentOf(angle) / base);
   }
 
   /** At the start the wheels point as commanded, or as near to it from straight ahead as their stops allow. */

@@ -191,8 +191,8 @@ export function steeringBase(/** @type {Layout} */ { parts, axle }) {
   return steered.reduce((sum, { at }) => sum + at[0], 0) / steered.length - axle.x_m;
 }
 
-/** Changes in which the one angle of coordinated wheels is the curvature that it means: engines of JavaScript and
- * libraries of C round a tangent each in their own way, so the command repeats a curvature alone to the same bits. */
+/** Changes in which the one angle of coordinated wheels is the curvature that it means, as sliders give it: a scene
+ * steers by one of them alone. */
 export function byCurvature(/** @type {any} */ scene, /** @type {import("./drive.js").Change[]} */ changes) {
   if (!hasHinges(scene) || !changes.some(({ signals }) => "steering_angle_rad" in signals)) return changes;
   const base = steeringBase(layoutOf(scene.vehicle));
