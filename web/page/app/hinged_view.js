@@ -11,9 +11,9 @@ const HALF_TURN = Math.PI;
 /** The carriage in its own frame, one unit a metre. */
 export function drawCarriage(/** @type {any} */ pen, /** @type {any} */ layout, /** @type {any} */ style) {
   drawOutline(pen, layout.parts[0].corners, style);
-  const [x, , r] = layout.parts[0].corners.reduce((most, each) => (each[0] > most[0] ? each : most), [0, 0, 0]);
+  const front = Math.max(...layout.parts[0].corners.map((/** @type {number[]} */ [x, , r]) => x + 0.3 * r));
   pen.save();
-  pen.translate(x - 0.5 * layout.size + 0.3 * r, 0);
+  pen.translate(front - 0.5 * layout.size, 0);
   drawNose(pen, layout.size, style);
   pen.restore();
 }
