@@ -17,6 +17,7 @@ from laconic import Scene, build_scene, read_scene, simulate
 from laconic.base.paths import scene_path
 from laconic.core import load
 from laconic.core.articulated import method_names
+from laconic.simulation.steering import angle_of, tangent_of
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None or not FOLDER.is_dir(),
                                 reason="needs node, and clang with wasm-ld for the package")
@@ -213,6 +214,26 @@ def test_limits_hold_commands_back_as_in_a_run_of_the_command_and_are_reported(t
         assert found["limited"], name
         assert {(each["hinge"], each["limit"]): each["steps"] for each in found["limited"]} == {
             (each.hinge, each.limit): each.steps for each in result.limited}, name
+
+
+ANGLES = """
+import { readFileSync } from "node:fs";
+import { angleOf, tangentOf } from "./node_modules/laconic-robots/src/hinge_commands.js";
+const { vectors, angles } = JSON.parse(readFileSync("given.json", "utf8"));
+console.log(JSON.stringify([vectors.map(([x, y]) => angleOf(x, y)), angles.map(tangentOf)]));
+"""
+
+
+def test_directions_and_tangents_have_the_bits_of_the_command_and_are_right(tmp_path):
+    random = np.random.default_rng(3)
+    vectors = np.concatenate([random.normal(size=(500, 2)), [[1, 0], [-1, 0], [0, 1], [0, -2], [-1, -1e-9], [0, 0]]])
+    angles = np.concatenate([random.uniform(-1.5, 1.5, 500), [0.0, 1e-9]])
+    given = {"vectors": vectors.tolist(), "angles": angles.tolist()}
+    (tmp_path / "given.json").write_text(json.dumps(given), encoding="utf-8")
+    found = json.loads(node(ANGLES, tmp_path))
+    assert found == [angle_of(*vectors.T).tolist(), tangent_of(angles).tolist()]
+    assert found[0] == pytest.approx(np.arctan2(*vectors.T[::-1]).tolist(), rel=2e-15)
+    assert found[1] == pytest.approx(np.tan(angles).tolist(), rel=1e-13)
 
 
 REFUSE = """

@@ -221,6 +221,7 @@ def test_a_hinge_at_its_stop_is_told_in_one_line_and_another_command_goes_on(pag
     assert simulated(exported(page, tmp_path)) == pose(page)
 
 
+@pytest.mark.nightly
 def test_a_twist_without_a_direction_is_refused_and_not_recorded(page, tmp_path):
     choose(page, "frc_swerve_mk4i")
     page.click("[name=drive][value=wheels]")
