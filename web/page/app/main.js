@@ -60,6 +60,7 @@ class Page {
     showStep(step_s);
     this.run?.free();
     this.run = undefined;
+    this.ended = false;
     this.editor.chosen = 0;
     this.fit();
     this.rebuild();

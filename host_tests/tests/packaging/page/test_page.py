@@ -82,6 +82,11 @@ def test_the_scenes_own_drive_ends_at_its_end_and_begins_anew(page):
     assert seconds(page) == pytest.approx(4.0)
     page.click("play")
     page.wait("const t = parseFloat(document.getElementById('time').textContent); return t > 0 && t < 2")
+    page.click("play")
+    step(page, 45)
+    page.choose("robot", "robotino2")  # whose own drive begins
+    step(page)
+    assert seconds(page) == pytest.approx(0.1)
 
 
 @pytest.mark.nightly
