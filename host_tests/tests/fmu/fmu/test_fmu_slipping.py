@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import copy
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -66,7 +70,8 @@ def rich() -> Scene:
               "yaw_inertia_kgm2": 4e-4, "name": "rear", "stop_low_rad": -0.021, "stop_high_rad": 0.021}
     vehicle = {"mass_kg": 20.0, "yaw_inertia_kgm2": 0.8, "com_x_m": 0.15, "com_z_m": 0.1, "wheel_radius_m": 0.08,
                "wheel_inertia_kgm2": 0.01, "wheel": wheels, "caster": [caster],
-               "motor": MOTOR, "drive": {"supply_V": 6.0, "supply_resistance_ohm": 0.05}}
+               "support": [{"x_m": -0.3, "y_m": 0.0}], "motor": MOTOR,
+               "drive": {"supply_V": 6.0, "supply_resistance_ohm": 0.05}}
     given = {"voltage_V[1]": 9.0, "voltage_V[2]": 5.0, "steering_angle_rad[front]": 0.3, "axle_torque_Nm[1]": 0.2,
              "steering_angle_rad[motor]": -0.2, "body_force_N[2]": 30.0}
     inputs = [{"signal": name, "kind": "steps", "t_s": [0.0, 0.05], "value": [value, -value]}
@@ -161,7 +166,24 @@ def test_fmpy_validates_it_without_a_message_and_it_offers_co_simulation_alone(v
     assert description.modelExchange is None and description.coSimulation.modelIdentifier == "LaconicSlipping"
     names = {variable.name.partition("[")[0] for variable in description.modelVariables}
     assert {"contact_state", "slip_across_m_per_s", "wheel_load_N", "servo_gain_Nm_per_rad", "slip_loss_J"} <= names
-    assert names.isdisjoint({"steering_twist", "no_slip_margin_N", "carriage_zeta", "support_load_N"})
+    assert names.isdisjoint({"steering_twist", "no_slip_margin_N", "carriage_zeta"})
+
+
+@ONE_IN_ORDINARY_RUNS
+def test_the_manipulation_toolbox_has_no_finding_and_terminals_name_variables(variant: str, tmp_path: Path) -> None:
+    fmu = made(rich(), variant, tmp_path)
+    done = subprocess.run([str(Path(sys.executable).parent / "fmutool"), "-input", str(fmu), "-check"],
+                          capture_output=True, text=True, check=True)
+    lines = (done.stdout + done.stderr).splitlines()
+    assert any("compliant with FMI" in line for line in lines), lines
+    assert not [line for line in lines if line.startswith(("WARNING", "ERROR", "CRITICAL"))]
+    with zipfile.ZipFile(fmu) as archive:
+        if "model.png" in archive.namelist():
+            return
+        terminals = ET.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    variables = {v.name for v in fmpy.read_model_description(str(fmu)).modelVariables}
+    members = {member.get("variableName") for member in terminals.iter("TerminalMemberVariable")}
+    assert members and members <= variables
 
 
 @BOTH
