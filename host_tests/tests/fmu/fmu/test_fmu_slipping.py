@@ -24,6 +24,7 @@ from laconic.cli.main import run
 from laconic.core import load
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
+from laconic.fmu.hinges import left_out
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import output_signals_of
 from laconic.scene.scene_tables import scene_tables
@@ -334,6 +335,12 @@ def test_the_command_writes_it_and_states_what_is_left_out(tmp_path: Path, capsy
     assert "the FMU has no inputs steering_twist[1], steering_twist[2], steering_twist[3]" in printed
     assert "steering_rate_rad_per_s of prescribed hinges" in printed
     assert fmpy.read_model_description(str(out)).coSimulation.modelIdentifier == "LaconicSlipping"
+
+
+def test_only_limits_that_the_fmu_lacks_are_stated() -> None:
+    assert left_out(on_friction("tricycle_agv")) == ""  # its motor's stops are parameters
+    assert "those of front are left out" in left_out(on_friction("tugger_train"))  # its front wheel is prescribed
+    assert left_out(rich()) == ""
 
 
 @pytest.mark.parametrize("option", ["derivatives", "estimate"])
