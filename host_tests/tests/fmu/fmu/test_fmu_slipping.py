@@ -17,6 +17,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_importer import DISCARD, ERROR, OK, Importer
 from fmu_saved_states import SUFFIX, deserialize, save, serialize
+from test_fmu_articulated import in_ecos, in_libcosim
 
 from laconic import build_scene, simulate
 from laconic.base.paths import built
@@ -335,6 +336,23 @@ def test_the_command_writes_it_and_states_what_is_left_out(tmp_path: Path, capsy
     assert "the FMU has no inputs steering_twist[1], steering_twist[2], steering_twist[3]" in printed
     assert "steering_rate_rad_per_s of prescribed hinges" in printed
     assert fmpy.read_model_description(str(out)).coSimulation.modelIdentifier == "LaconicSlipping"
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("package", "run_in"), [("ecospy", in_ecos), ("libcosimpy", in_libcosim)])
+def test_it_runs_in_other_importers(package: str, run_in: Any, tmp_path: Path) -> None:
+    pytest.importorskip(package)
+    fmu = make_fmu(rich(), tmp_path / "scene.fmu", version=2, enumerations=False)
+    given = {"voltage_V[1]": 6.0, "voltage_V[2]": 2.0, "steering_angle_rad[2]": 0.3}
+    names = ["x_m", "y_m", "heading_rad", "hinge_rad[2]", "slip_loss_J", "wheel_load_N[1]"]
+    with Importer(fmu) as importer:
+        importer.enter_initialization()
+        importer.must("SetReal", importer.references(*given), len(given), list(given.values()))
+        importer.must("ExitInitializationMode")
+        for k in range(50):
+            assert importer.step(k * 0.01, 0.01) == OK
+        expected = [importer.get(name)[0] for name in names]
+    assert run_in(fmu, given, names, 50, 0.01) == pytest.approx(expected, rel=1e-6, abs=1e-9)
 
 
 def test_only_limits_that_the_fmu_lacks_are_stated() -> None:
