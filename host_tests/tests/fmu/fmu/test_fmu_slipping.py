@@ -189,6 +189,17 @@ def test_the_manipulation_toolbox_has_no_finding_and_terminals_name_variables(va
 
 
 @BOTH
+def test_the_fmu_of_ideal_ground_has_nothing_of_it(version: int) -> None:
+    with zipfile.ZipFile(built(f"fmu/LaconicArticulated_fmi{version}.fmu")) as archive:
+        assert [name for name in archive.namelist() if "tree_" in name or "slipping" in name] == []
+        library = next(name for name in archive.namelist() if name.endswith("linux/LaconicArticulated.so") or
+                       name.endswith("linux64/LaconicArticulated.so"))
+        for part in (library, "modelDescription.xml"):
+            for word in (b"slip_along_m_per_s", b"scrub_loss_J", b"LoopGain"):
+                assert word not in archive.read(part), (part, word)
+
+
+@BOTH
 def test_fmpy_runs_it_as_the_scene_runs(version: int) -> None:
     given = {"voltage_V[1]": 6.0, "voltage_V[2]": -6.0} if version == 2 else {"voltage_V": [6.0, -6.0, 0.0, 0.0]}
     found = fmpy.simulate_fmu(str(generic(version)), stop_time=1.0, output_interval=0.01, step_size=0.01,
