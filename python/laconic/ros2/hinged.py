@@ -23,7 +23,8 @@ from laconic.scene import Scene
 from laconic.scene.base import BaseTable
 from laconic.scene.hinge_signals import RATE, TWIST, VOLTAGE
 from laconic.scene.hinges import Hinge
-from laconic.simulation.articulated import follow_rows, start_plant
+from laconic.simulation.articulated import follow_rows, start_plant, trailers_of
+from laconic.simulation.kept_rows import Folds
 from laconic.simulation.loads import Loads, centre_of
 from laconic.simulation.steering import Commands
 
@@ -212,6 +213,7 @@ class Hinged:
         self.steps = 0
         self.before: tuple[float, float, float] | None = None  # velocity at the last look
         self.margin_N, self.margin_steps = math.inf, 0
+        self.folds, self.folds_told = Folds(trailers_of(scene, vehicle)), set[str]()
 
     def steer(self, rate_limit: float) -> None:
         """Sets what turns the hinges in the coming step; the first keeps them, as a record begins with their twist."""
@@ -269,6 +271,7 @@ class HingedRobots:
         before, each.before = each.before or now, now
         ahead, left = ((now[axis] - before[axis]) / period_s if period_s else 0.0 for axis in range(2))
         self._watch(each)
+        each.folds.take(motion.hinge_angle_rad, each.steps * self.scene.run.step_s)
         angles, hinges = motion.wheel_angle_rad.astype(float), motion.hinge_angle_rad.astype(float)
         return Seen(x, y, motion.heading_rad, now, angles.tolist(), motion.wheel_speed_rad_per_s.tolist(),
                     np.concatenate([angles, hinges]), (ahead - rate * now[1], left + rate * now[0], rate), None,
@@ -297,6 +300,14 @@ class HingedRobots:
                         velocity_body_m_per_s=(0.0, 0.0), yaw_rate_rad_per_s=0.0)
         hinges = tuple(replace(hinge, start_rate_rad_per_s=0.0) for hinge in self.scene.hinges)
         self.robots[robot] = self._new(replace(self.scene, initial=start, hinges=hinges))
+
+    def folded(self, robot: int) -> Sequence[str]:
+        """As Motion.folded."""
+        each = self.robots[robot]
+        found = [fold for fold in each.folds.found() if fold.hinge not in each.folds_told]
+        each.folds_told |= {fold.hinge for fold in found}
+        return [f"{fold.hinge} folds: its hinge angle is beyond 90°; a real one would hit what draws it; give "
+                "stop_low_deg and stop_high_deg" for fold in found]
 
     def has_refused(self, robot: int) -> bool:
         """As Motion.has_refused."""
@@ -385,8 +396,8 @@ class HingedBase(Base):
         got = math.atan(possible[2] / possible[0] * base_m) if possible[0] else 0.0
         if abs(got - steering_rad) > 1e-6:
             remarks.append(f"a steering angle of {steering_rad:g} rad is limited to {got:g} rad")
-        self._rate_limit[robot] = abs(steering_rad_per_s) or math.inf
-        self._own_ramps[robot] = abs(acceleration_m_per_s2) or math.inf
+        self._rate_limit[robot] = steering_rad_per_s or math.inf
+        self._own_ramps[robot] = acceleration_m_per_s2 or math.inf
         return remarks
 
     def _follow(self, robot: int, given: np.ndarray, names: Sequence[str]) -> list[str]:

@@ -66,6 +66,9 @@ class Motion(Protocol):
     def grip(self, robot: int) -> str:
         """What the ground could not give since the last question, in words; empty where nothing is wrong."""
 
+    def folded(self, robot: int) -> Sequence[str]:
+        """Trailers that have folded since the last question, in words that begin with their names."""
+
 
 def motion_of(scene: Scene, robots: int) -> Singles | Lanes:
     """A batch where it can step the vehicles and nothing is lost, else one by one."""
@@ -227,6 +230,10 @@ class Singles:
         moved = replace(self.scene, initial=self.geometry.start(x_m, y_m, heading_rad))
         self.robots[robot] = Single(moved, self.core)
 
+    def folded(self, robot: int) -> Sequence[str]:
+        """As Motion.folded: nothing is hung on these."""
+        return ()
+
     def has_refused(self, robot: int) -> bool:
         """As Motion.has_refused."""
         return self.robots[robot].has_refused
@@ -301,6 +308,10 @@ class Lanes:
         start = self.geometry.start(x_m, y_m, heading_rad)
         self.batch.start(robot, x_m=start.x_m, y_m=start.y_m, heading_rad=start.heading_rad)
         self._told[robot], self._before[robot] = False, (0.0, 0.0, 0.0)
+
+    def folded(self, robot: int) -> Sequence[str]:
+        """As Motion.folded: nothing is hung on these."""
+        return ()
 
     def has_refused(self, robot: int) -> bool:
         """As Motion.has_refused."""

@@ -143,13 +143,18 @@ def _farthest(differences: Any) -> float:
     return float(np.max(np.abs(differences), initial=0.0))
 
 
+def trailers_of(scene: Scene, vehicle: ArticulatedVehicle) -> list[tuple[int, str]]:
+    """Hinges whose bodies are drawn and that are no casters, by their numbers and names."""
+    follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
+    return [(at, hinge.name) for at, (hinge, link) in enumerate(zip(scene.hinges, vehicle.model.link, strict=False))
+            if hinge.form != "caster" and link.motion == follows]
+
+
 class Rows(KeptRows):
     """The outputs of a run on ideal ground."""
 
     def __init__(self, scene: Scene, vehicle: ArticulatedVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
-        follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
-        super().__init__(kept, [(at, hinge.name) for at, (hinge, link) in enumerate(zip(
-            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows])
+        super().__init__(kept, trailers_of(scene, vehicle))
         self._inputs, self._loads = inputs, Loads(scene)
         names = {signal.partition("[")[0] for signal in kept}
         self._of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
