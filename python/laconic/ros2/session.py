@@ -276,7 +276,8 @@ class Session:
         """What was done."""
         ends = [{"name": robot.node.full_name, "x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad}
                 for robot, seen in zip(self.robots, self.base.look(), strict=True)]
-        return {"cycles": self.cycles, "is_faster": self.options.speed > 1.0, "period_s": self.period_s, "robots": self.options.robots,
+        return {"cycles": self.cycles, "is_faster": self.options.speed > 1.0, "period_s": self.period_s,
+                "robots": self.options.robots,
                 "messages": sum(robot.messages for robot in self.robots),
                 "commands": sum(robot.command.count for robot in self.robots), "late_cycles": self.lateness.late,
                 "skipped_s": self.lateness.skipped_s, **self.lateness.figures(),
@@ -310,8 +311,8 @@ def check_options(options: Ros2Options) -> None:
     if options.speed != 1.0 and not options.is_sim_time:
         raise BadInput(f"--speed: {options.speed:g} needs stamps of simulated time; add --sim-time")
     if options.speed > MOST_SPEED:
-        raise BadInput(f"--speed: {options.speed:g} is more than any machine can; give at most {MOST_SPEED:g}, which runs "
-                       "as fast as it can")
+        raise BadInput(f"--speed: {options.speed:g} is more than any machine can; give at most {MOST_SPEED:g}, which "
+                       "runs as fast as it can")
     if options.robots > 1 and options.record:
         raise BadInput("--record: keeps the run of one robot; leave out --robots")
     if options.map_file and not options.is_loopback:
@@ -347,14 +348,15 @@ def frames_of(given: Sequence[str]) -> dict[str, str]:
         found[name] = frame.lstrip("/")
     for name, frame in found.items():
         if others := [other for other, its in found.items() if its == frame and other != name]:
-            raise BadInput(f"--frame: {name} and {others[0]} are both called {frame}; give each frame a name of its own")
+            raise BadInput(f"--frame: {name} and {others[0]} are both called {frame}; give each frame a name of its "
+                           "own")
     return found
 
 
 def description_of(path: Path) -> str:
     """The text of a URDF; BadInput for another file."""
     text = text_of_file(path, "a URDF file").text
-    root = root_of(path, text.encode(), "is no URDF, which is XML")
+    root = root_of(path, text, "is no URDF, which is XML")
     if root.tag != "robot" or root.find("link") is None and root.find("joint") is None:
         raise BadInput(f"{path}: is no URDF; give the file with <robot>, its links and joints (of xacro: what xacro makes "
                        "of it)")
