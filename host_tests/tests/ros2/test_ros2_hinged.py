@@ -270,14 +270,15 @@ def test_a_limit_below_0_is_refused_by_name(field: str) -> None:
     with rig_of("f1tenth") as rig:
         drive_by_angle(rig, 10, speed=1.0, **{field: -1.0})
         assert rig.session.base.look()[0].x_m == 0.0
-        assert rig.lines == [f"/laconic: a command on ackermann_cmd has {field} = -1, and is ignored; give limits above 0, "
-                             "for both ways, or 0 for those of the scene"]
+        assert rig.lines == [f"/laconic: a command on ackermann_cmd has {field} = -1, and is ignored; give limits "
+                             "above 0, for both ways, or 0 for those of the scene"]
 
 
 @pytest.mark.parametrize("name", ["f1tenth", "canopen_agv"])
 def test_odometry_and_truth_begin_at_one_pose_of_the_base(name: str) -> None:
     with rig_of(name) as rig:
-        odoms, truths = (rig.node.subscription(topic, "nav_msgs/msg/Odometry") for topic in ("odom", "ground_truth/odom"))
+        odoms, truths = (rig.node.subscription(topic, "nav_msgs/msg/Odometry")
+                         for topic in ("odom", "ground_truth/odom"))
         rig.turn()
         places = [(each.pose.pose.position.x, each.pose.pose.position.y) for each in (last(odoms), last(truths))]
         assert places == [(0.0, 0.0), (0.0, 0.0)]

@@ -61,7 +61,7 @@ def library_lines(say: Callable[[str], None]) -> Iterator[LibraryLines | None]:
     os.close(handle)
     taken, before = LibraryLines(Path(path)), sys.stderr
     file = os.open(path, os.O_WRONLY | os.O_APPEND)
-    own = open(ours, "w", buffering=1, encoding="utf-8", errors="backslashreplace", closefd=False)  # noqa: SIM115, PTH123
+    own = os.fdopen(ours, "w", buffering=1, encoding="utf-8", errors="backslashreplace", closefd=False)
     try:
         os.dup2(file, 2)
         if before is sys.__stderr__:

@@ -358,8 +358,8 @@ def description_of(path: Path) -> str:
     text = text_of_file(path, "a URDF file").text
     root = root_of(path, text, "is no URDF, which is XML")
     if root.tag != "robot" or root.find("link") is None and root.find("joint") is None:
-        raise BadInput(f"{path}: is no URDF; give the file with <robot>, its links and joints (of xacro: what xacro makes "
-                       "of it)")
+        raise BadInput(f"{path}: is no URDF; give the file with <robot>, its links and joints (of xacro: what xacro "
+                       "makes of it)")
     return text
 
 

@@ -87,7 +87,7 @@ class Participant:
         self.nodes: list[Node] = []
         self._topics: dict[tuple[str, str], Any] = {}
         self._readers: dict[tuple[str, str], list[Any]] = {}  # by topic and type on the wire
-        self._unmatched: dict[int, tuple[Any, float]] = {}    # writers for them by handle, and until when they may match
+        self._unmatched: dict[int, tuple[Any, float]] = {}    # writers for them, and until when they may match
         self._entities: list[Any] = [self.publisher, self.subscriber]
         graph = "rmw_dds_common/msg/ParticipantEntitiesInfo"
         self._graph = self._endpoint(DataWriter, "ros_discovery_info", graph, LATCHED) if announces else None

@@ -69,8 +69,9 @@ def config_of(router: str, listen: str, is_local: bool) -> Any:
     made = zenoh.Config()
     own = listen or ("tcp/127.0.0.1:0" if is_local else "tcp/[::]:0")
     for key, value in (("mode", '"peer"'), ("connect/endpoints", f'["{router}"]'), ("connect/timeout_ms", "-1"),
-                       ("connect/exit_on_failure", "false"), ("connect/retry", RETRY), ("listen/endpoints", f'["{own}"]'),
-                       ("scouting/multicast/enabled", "false"), ("timestamping/enabled", "true")):
+                       ("connect/exit_on_failure", "false"), ("connect/retry", RETRY),
+                       ("listen/endpoints", f'["{own}"]'), ("scouting/multicast/enabled", "false"),
+                       ("timestamping/enabled", "true")):
         try:
             made.insert_json5(key, value)
         except Exception:
@@ -282,8 +283,8 @@ class Context:
         if is_linked and self._is_missed:
             yield f"connected to Zenoh at {self._where}"
         elif not is_linked and not self._is_missed and time.monotonic() >= self._until_s:
-            yield (f"the Zenoh router at {self._where} is gone; will connect when it comes again" if self._was_linked else
-                   f"no Zenoh router at {self._where} yet; will connect when it comes")
+            yield (f"the Zenoh router at {self._where} is gone; will connect when it comes again"
+                   if self._was_linked else f"no Zenoh router at {self._where} yet; will connect when it comes")
             self._is_missed = True
         self._was_linked, self._is_missed = self._was_linked or is_linked, self._is_missed and not is_linked
 
