@@ -34,6 +34,7 @@ from ros2_support import DOMAIN, announced, last, rig_of
 
 TWIST = "geometry_msgs/msg/Twist"
 ODOMETRY, TF = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
+QUIET_DOMAIN = 73  # where no other writers come and go
 
 
 def yaw_of(rotation: Any) -> float:
@@ -71,7 +72,7 @@ def test_a_command_that_is_not_finite_is_ignored_and_told(number: float) -> None
         assert rig.session.told.counts["/laconic: not finite"] == 60
 
 
-def test_commanders_on_two_topics_are_told_with_both(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_commanders_on_two_topics_are_told_with_both() -> None:
     with rig_of("f1tenth") as rig:
         kind = "ackermann_msgs/msg/AckermannDriveStamped"
         one, other = rig.node.publisher("cmd_vel", TWIST), rig.node.publisher("drive", kind)
@@ -92,7 +93,7 @@ def test_a_publisher_whose_type_has_other_fields_is_told(monkeypatch: pytest.Mon
         speed: float64
 
     monkeypatch.setattr(wire, "MATCH_S", 0.0)
-    with rig_of() as rig:
+    with rig_of(domain=QUIET_DOMAIN) as rig:
         writer = DataWriter(rig.peer.publisher, Topic(rig.peer.dds, "rt/cmd_vel", Twist), qos=rig.peer._qos(
             DataWriter, TWIST, USUAL, ""))
         rig.turn(60, lambda: writer.write(Twist(1.0)))
@@ -102,9 +103,18 @@ def test_a_publisher_whose_type_has_other_fields_is_told(monkeypatch: pytest.Mon
         assert sum(rig.session.told.counts.values()) == 1
 
 
+def test_a_publisher_that_came_and_went_is_no_event(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wire, "MATCH_S", 0.0)
+    with rig_of(domain=QUIET_DOMAIN) as rig:
+        rig.turn()
+        rig.node.publisher("cmd_vel", TWIST).__del__()
+        rig.turn(60)
+        assert rig.lines == []
+
+
 def test_a_publisher_that_offers_best_effort_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wire, "MATCH_S", 0.0)
-    with rig_of() as rig:
+    with rig_of(domain=QUIET_DOMAIN) as rig:
         rig.drive(30, 0.0)  # one that matches is no event
         DataWriter(rig.peer.publisher, rig.peer._topics["rt/cmd_vel", TWIST],
                    qos=Qos(Policy.Reliability.BestEffort, Policy.DataRepresentation(use_cdrv0_representation=True)))

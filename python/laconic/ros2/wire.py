@@ -13,7 +13,7 @@ from functools import partial
 from typing import Any
 
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
-from cyclonedds.core import DDSException
+from cyclonedds.core import DDSException, InstanceState
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter, Publisher
 from cyclonedds.qos import Policy, Qos
@@ -40,6 +40,7 @@ from laconic.ros2.rtps import Guid, Services
 
 HEADER_BYTES = 20  # of a request of rmw_cyclonedds: encapsulation, client and number
 MATCH_S = 2.0  # within which a writer matches: it is asked for the fields of its type meanwhile
+MOST_WRITERS = 10_000
 MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
@@ -60,6 +61,11 @@ def settings(is_local: bool) -> str:
     """What configures a domain: CYCLONEDDS_URI, and what we add."""
     given = [] if is_local else [each for each in [os.environ.get("CYCLONEDDS_URI", "")] if each]
     return ",".join([*given, *([THIS_MACHINE] if is_local else []), BY_NAMES])
+
+
+def is_alive(found: Any) -> bool:
+    """Whether an endpoint was there when it was read."""
+    return bool(found.sample_info.valid_data and found.sample_info.instance_state == InstanceState.Alive)
 
 
 def is_best_effort(qos: Qos) -> bool:
@@ -189,7 +195,7 @@ class Participant:
             self._unmatched.pop(handle, None)
             if getattr(each.sample_info, "valid_data", False):
                 yield each.topic_name, each.type_name, ""
-                if (each.topic_name, each.type_name) in self._readers:
+                if (each.topic_name, each.type_name) in self._readers and is_alive(each):
                     self._unmatched[handle] = (each, time.monotonic() + MATCH_S)
         matched = {key: {handle for reader in readers for handle in reader.get_matched_publications()}
                    for key, readers in self._readers.items()} if self._unmatched else {}
@@ -197,8 +203,13 @@ class Participant:
             key = each.topic_name, each.type_name
             if handle in matched[key] or time.monotonic() >= until_s:
                 del self._unmatched[handle]
-                if handle not in matched[key]:
+                if handle not in matched[key] and self._is_there(handle):
                     yield *key, BEST_EFFORT if is_best_effort(each.qos) else OTHER_FIELDS
+
+    def _is_there(self, handle: int) -> bool:
+        """Whether a writer has not gone meanwhile."""
+        found = BuiltinDataReader(self.dds, BuiltinTopicDcpsPublication).take(N=MOST_WRITERS)
+        return any(each.sample_info.instance_handle == handle and is_alive(each) for each in found)
 
     def close(self) -> None:
         """Leaves the domain, so that peers know at once."""
