@@ -116,9 +116,10 @@ def test_a_publisher_that_offers_best_effort_is_told(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(wire, "MATCH_S", 0.0)
     with rig_of(domain=QUIET_DOMAIN) as rig:
         rig.drive(30, 0.0)  # one that matches is no event
-        DataWriter(rig.peer.publisher, rig.peer._topics["rt/cmd_vel", TWIST],
-                   qos=Qos(Policy.Reliability.BestEffort, Policy.DataRepresentation(use_cdrv0_representation=True)))
+        qos = Qos(Policy.Reliability.BestEffort, Policy.DataRepresentation(use_cdrv0_representation=True))
+        writer = DataWriter(rig.peer.publisher, rig.peer._topics["rt/cmd_vel", TWIST], qos=qos)
         rig.turn(60)
+        assert not writer.get_matched_subscriptions()
         assert rig.lines == ["/laconic: a publisher on cmd_vel offers best effort, which is not heard; make it "
                              "reliable"]
 
