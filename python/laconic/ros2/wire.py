@@ -41,6 +41,7 @@ from laconic.ros2.rtps import Guid, Services
 HEADER_BYTES = 20  # of a request of rmw_cyclonedds: encapsulation, client and number
 MATCH_S = 2.0  # within which a writer matches: it is asked for the fields of its type meanwhile
 MOST_WRITERS = 10_000
+HANDLES = 2**64  # cyclonedds gives handles with a sign in one place and without in another
 MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
@@ -191,13 +192,13 @@ class Participant:
     def new_writers(self) -> Iterator[tuple[str, str, str]]:
         """As Middleware.new_writers; whether a writer matches is known some time after it has come."""
         for each in self._writers.take(N=MOST_AT_ONCE):
-            handle = each.sample_info.instance_handle
+            handle = each.sample_info.instance_handle % HANDLES
             self._unmatched.pop(handle, None)
             if getattr(each.sample_info, "valid_data", False):
                 yield each.topic_name, each.type_name, ""
                 if (each.topic_name, each.type_name) in self._readers and is_alive(each):
                     self._unmatched[handle] = (each, time.monotonic() + MATCH_S)
-        matched = {key: {handle for reader in readers for handle in reader.get_matched_publications()}
+        matched = {key: {handle % HANDLES for reader in readers for handle in reader.get_matched_publications()}
                    for key, readers in self._readers.items()} if self._unmatched else {}
         for handle, (each, until_s) in list(self._unmatched.items()):
             key = each.topic_name, each.type_name
@@ -209,7 +210,7 @@ class Participant:
     def _is_there(self, handle: int) -> bool:
         """Whether a writer has not gone meanwhile."""
         found = BuiltinDataReader(self.dds, BuiltinTopicDcpsPublication).take(N=MOST_WRITERS)
-        return any(each.sample_info.instance_handle == handle and is_alive(each) for each in found)
+        return any(each.sample_info.instance_handle % HANDLES == handle and is_alive(each) for each in found)
 
     def close(self) -> None:
         """Leaves the domain, so that peers know at once."""
