@@ -26,7 +26,7 @@ from laconic.scene.hinges import Hinge
 from laconic.simulation.articulated import follow_rows, start_plant, trailers_of
 from laconic.simulation.kept_rows import Folds
 from laconic.simulation.loads import Loads, centre_of
-from laconic.simulation.steering import Commands
+from laconic.simulation.steering import Commands, LiveInputs
 
 STEERING_RAD_PER_S = 10.0    # of a hinge whose scene gives no limit, as small servos have
 BANDWIDTH_RAD_PER_S = 8.0    # of a steering motor's controller, which is damped critically
@@ -37,18 +37,6 @@ AROUND_RAD = 0.1             # the same on the way to another twist
 SHARE = 1.0 - 1e-9           # of a rate limit, for the same reason
 HALVINGS = 30
 MARGIN_S = 0.02              # between looks at what the ground must give
-
-
-class LiveInputs:
-    """Inputs of the coming step, in the place of those that a scene gives for a run."""
-
-    def __init__(self, signals: Sequence[str], step_s: float):
-        self.signals, self.step_s = tuple(signals), step_s
-        self.values = np.zeros(len(signals))
-
-    def samples(self, first: int, count: int) -> np.ndarray:
-        """The same at start, middle and end of each step."""
-        return np.broadcast_to(self.values, (count, 3, len(self.values)))
 
 
 class Steering:

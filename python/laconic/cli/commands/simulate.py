@@ -35,6 +35,7 @@ from laconic.scene.standing import Standing, standing_of
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
 from laconic.simulation.articulated import HingeErrors, HingeErrorSizes
 from laconic.simulation.csv_text import csv_text
+from laconic.simulation.loads import Loads
 from laconic.simulation.run import is_watched
 
 FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
@@ -109,6 +110,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if run.least_margin and run.least_margin[0] < 0.0:
         warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
              f"slip, by {-run.least_margin[0]:.3g} N")
+    if run.lifted:
+        wheel, time_s = run.lifted
+        warn(f"{given.path}: at {time_s:g} s wheel {wheel} lifts from the ground; the run holds the vehicle level")
     for line in () if given.has_hinges else nearly_one_line(given):
         warn(f"{given.path}: {line}")
     if (standing := resting(run)) and standing.tips:
@@ -174,7 +178,12 @@ def enclosed(run: Trajectory) -> Enclosure:
 
 def resting(run: Trajectory) -> Standing | None:
     """How the robot stands where the scene has data of the ground."""
-    return standing_of(run.scene) if is_watched(run.scene) else None
+    scene = run.scene
+    if scene.has_hinges:
+        vehicle = scene.vehicle
+        has_ground = vehicle["friction_coefficient"] or vehicle["com_z_m"] or scene.slips_on_hinges
+        return Loads(scene).standing([hinge.start_angle_rad for hinge in scene.hinges]) if has_ground else None
+    return standing_of(scene) if is_watched(scene) else None
 
 
 def words_of_standing(run: Trajectory) -> list[str]:
@@ -212,6 +221,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else margin_json(run),
         "limited": [asdict(each) for each in run.limited], "folded": [asdict(each) for each in run.folded],
+        "lifted": {"wheel": run.lifted[0], "time_s": run.lifted[1]} if run.lifted else None,
         "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}

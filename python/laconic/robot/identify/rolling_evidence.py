@@ -77,8 +77,9 @@ class RollingEvidence:
         return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
 
 
-def run_of(log: Log) -> Run:
-    """BadInput for a log without a true pose, or whose true path has no length."""
+def run_of(log: Log, *, by_wheels: bool = True) -> Run:
+    """BadInput for a log without a true pose, or whose true path has no length. `by_wheels`: their rotations are
+    used."""
     pose = log.needs("pose", "identify")
     seen = log.seen
     length = path_length(log.time_s[seen], pose[seen])
@@ -87,7 +88,8 @@ def run_of(log: Log) -> Run:
     last = len(seen) - 1
     taken = seen[np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])]
     cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
-    return Run(log.rotation_rad(), pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
+    rotation = log.rotation_rad() if by_wheels else np.zeros((len(log.time_s) - 1, 0))
+    return Run(rotation, pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
                log.has_heading)
 
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput
-from laconic.robot.logs.log import POINTS, Log
+from laconic.robot.logs.log import Log
 from laconic.robot.replay.placing import fitted_to, start_of
-from laconic.robot.replay.rolling import path_of, wheel_radii
+from laconic.robot.replay.rolling import at_point, path_of, wheel_radii
 from laconic.scene import Scene
 from laconic.simulation.loads import centre_of
 
@@ -39,11 +39,7 @@ class SteeredRolling:
     def path(self, log: Log) -> np.ndarray:
         """Predicted poses at the samples' times, from the true first pose; placed to fit where the log has positions
         alone."""
-        steps = self.moved(log)
-        if log.pose_point != POINTS[0]:
-            point = log.pose_point
-            x, y = (self._centre.real, self._centre.imag) if isinstance(point, str) else point
-            steps = steps + steps[:, 2:] * np.array([-y, x, 0.0])
+        steps = at_point(self.moved(log), log.pose_point, (self._centre.real, self._centre.imag))
         return fitted_to(log, path_of(steps, start_of(log)))
 
     def moved(self, log: Log) -> np.ndarray:
