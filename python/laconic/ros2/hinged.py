@@ -16,14 +16,19 @@ from laconic.can.play.vehicle import about_hinge
 from laconic.core import Core
 from laconic.core.articulated import ArticulatedMotion, ArticulatedPlant
 from laconic.errors import BadInput, Refused
-from laconic.ros2.base import Base, Loop, Odometry, driven_wheels, loop_of
+from laconic.ros2.base import TWIST_NAMES, Base, Loop, driven_wheels, loop_of
 from laconic.ros2.chassis import STRAIGHT, Chassis, Steered
 from laconic.ros2.motion import Motion, Seen
 from laconic.scene import Scene
 from laconic.scene.base import BaseTable
 from laconic.scene.hinge_signals import RATE, TWIST, VOLTAGE
-from laconic.scene.hinges import Hinge
-from laconic.simulation.articulated import follow_rows, start_plant, trailers_of
+from laconic.simulation.articulated import (
+    follow_rows,
+    refusal_of_run,
+    start_plant,
+    trailers_of,
+    watched_hinges,
+)
 from laconic.simulation.kept_rows import Folds
 from laconic.simulation.loads import Loads, centre_of
 from laconic.simulation.steering import Commands, LiveInputs
@@ -196,8 +201,7 @@ class Hinged:
         self.row = self.commands.first_row()
         self.plant: ArticulatedPlant = start_plant(scene, vehicle, self.row)
         self.motion, self.has_refused = self.plant.motion(), False
-        self.watched: list[tuple[int, Hinge]] = [
-            (at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
+        self.watched = watched_hinges(scene)
         self.steps = 0
         self.before: tuple[float, float, float] | None = None  # velocity at the last look
         self.margin_N, self.margin_steps = math.inf, 0
@@ -240,9 +244,7 @@ class HingedRobots:
                     each.step(given[:, number])
                 except Refused as refused:
                     each.has_refused = True
-                    text = refused.message
-                    refusals.append((number, refused if str(self.scene.path) in text
-                                     else self.scene.refusal_in_file(refused)))
+                    refusals.append((number, refusal_of_run(self.scene, refused)))
         return refusals
 
     def speeds(self) -> np.ndarray:
@@ -309,25 +311,6 @@ class HingedRobots:
             else ""
 
 
-class HingedOdometry(Odometry):
-    """Odometry from the encoders of wheels and steering."""
-
-    def __init__(self, chassis: Chassis, measured: np.ndarray):
-        self._chassis, self._measured = chassis, measured
-        self._angles: np.ndarray | None = None
-        self.x_m = self.y_m = self.heading_rad = 0.0
-        self.velocity = (0.0, 0.0, 0.0)
-
-    def see(self, angles_rad: np.ndarray, period_s: float) -> None:
-        """As Odometry.see, with the angles of all hinges behind those of the wheels."""
-        before, self._angles = self._angles, angles_rad
-        if before is None or period_s <= 0.0:
-            return
-        count = len(self._measured)
-        self.add(*self._chassis.travelled(before[count:], angles_rad[count:], angles_rad[:count] - before[:count],
-                                          self._measured), period_s)
-
-
 class HingedBase(Base):
     """Robots with hinges that follow velocity commands."""
 
@@ -351,8 +334,9 @@ class HingedBase(Base):
         self._own_ramps = np.full(robots, math.inf)
         return HingedRobots(scene, robots, self.signals, self.believed), loop
 
-    def _new_odometry(self) -> Odometry:
-        return HingedOdometry(self.believed, self._measured)
+    def _travelled(self, before: np.ndarray, after: np.ndarray) -> Sequence[float]:
+        count = len(self._measured)  # the angles of all hinges are behind those of the wheels
+        return self.believed.travelled(before[count:], after[count:], after[:count] - before[:count], self._measured)
 
     @property
     def signals(self) -> list[str]:
@@ -363,7 +347,7 @@ class HingedBase(Base):
 
     def command(self, robot: int, ahead: float, left: float, yaw_rate: float) -> list[str]:
         """As in Base; a car that cannot turn so tightly keeps its speed and turns less."""
-        return self._follow(robot, np.array([ahead, left, yaw_rate]), ("linear.x", "linear.y", "angular.z"))
+        return self._follow(robot, np.array([ahead, left, yaw_rate]), TWIST_NAMES)
 
     @property
     def is_car(self) -> bool:
@@ -391,10 +375,7 @@ class HingedBase(Base):
     def _follow(self, robot: int, given: np.ndarray, names: Sequence[str]) -> list[str]:
         each = self.motion.robots[robot]
         wanted = self.believed.possible(given, each.motion.hinge_angle_rad)
-        remarks = [f"{name} = {asked:g} is impossible for these wheels and becomes {got:g}"
-                   for name, asked, got in zip(names, given, np.round(wanted, 9) + 0.0, strict=False)
-                   if abs(asked - got) > 1e-6]
-        remarks += self._limit(wanted)
+        remarks = [*self._impossible(names, given, wanted), *self._limit(wanted)]
         if wanted.any() and (each.steering.clear(wanted) != wanted).any():
             remarks.append("a turning centre in a steered wheel is moved beside it")
         if wanted.any():

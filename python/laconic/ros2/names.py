@@ -47,6 +47,12 @@ def check_name(option: str, name: str) -> str:
     return "/" + "/".join(parts)
 
 
+def check_domain(domain: int) -> None:
+    """BadInput for a number that is no domain."""
+    if not 0 <= domain <= MOST_DOMAIN:
+        raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
+
+
 def topic_name(prefix: str, namespace: str, topic: str, suffix: str = "") -> str:
     """The DDS name of a topic or service: rt/robot1/odom; a name with a leading slash is not in the namespace."""
     full = topic if topic.startswith("/") else f"{namespace.rstrip('/')}/{topic}"

@@ -274,6 +274,7 @@ class Session:
 
     def figures(self) -> dict[str, Any]:
         """What was done."""
+        self._pass_on(self.clock.now_s())
         ends = [{"name": robot.node.full_name, "x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad}
                 for robot, seen in zip(self.robots, self.base.look(), strict=True)]
         return {"cycles": self.cycles, "is_faster": self.options.speed > 1.0, "period_s": self.period_s,

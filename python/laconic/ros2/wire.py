@@ -28,10 +28,10 @@ from laconic.ros2.names import (
     BEST_EFFORT,
     LATCHED,
     MOST_AT_ONCE,
-    MOST_DOMAIN,
     OTHER_FIELDS,
     USUAL,
     Quality,
+    check_domain,
     polled,
     sent,
     topic_name,
@@ -79,8 +79,7 @@ class Participant:
 
     def __init__(self, domain: int, distribution: str = USUAL_DISTRIBUTION, *, is_local: bool = False,
                  announces: bool = True, middlewares: Sequence[str] = ("cyclonedds",)):
-        if not 0 <= domain <= MOST_DOMAIN:
-            raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
+        check_domain(domain)
         self.gid_bytes, self.domain = GID_BYTES[distribution], domain
         self.has_hashes, self.announces = distribution not in WITHOUT_HASHES, announces
         try:
@@ -181,7 +180,7 @@ class Participant:
         own = bytes(self.dds.guid.bytes)
         for info in polled(self._others):
             if bytes(info.gid.data)[:16] != own:
-                names = {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in info.node_entities_info_seq}
+                names = {topic_name("", each.node_namespace, each.node_name) for each in info.node_entities_info_seq}
                 found |= names & ours
         return found
 
@@ -245,7 +244,7 @@ class Node:
     @property
     def full_name(self) -> str:
         """With its namespace: /robot1/laconic."""
-        return f"{self.namespace.rstrip('/')}/{self.name}"
+        return topic_name("", self.namespace, self.name)
 
     def publisher(self, topic: str, message: str, quality: Quality = USUAL) -> Any:
         """A DataWriter."""

@@ -21,7 +21,7 @@ from zenoh.handlers import FifoChannel, RingChannel
 from laconic.errors import BadInput
 from laconic.ros2 import USUAL_DISTRIBUTION, WITHOUT_HASHES
 from laconic.ros2.messages import dds_name, message_class, type_hash
-from laconic.ros2.names import MOST_AT_ONCE, MOST_DOMAIN, OTHER_FIELDS, USUAL, Quality, topic_name
+from laconic.ros2.names import MOST_AT_ONCE, OTHER_FIELDS, USUAL, Quality, check_domain, topic_name
 
 USUAL_ROUTER = "tcp/localhost:7447"  # where peers expect one
 SETTINGS = "ZENOH_SESSION_CONFIG_URI"
@@ -167,7 +167,7 @@ class ZenohNode:
     @property
     def full_name(self) -> str:
         """With its namespace: /robot1/laconic."""
-        return f"{self.namespace.rstrip('/')}/{self.name}"
+        return topic_name("", self.namespace, self.name)
 
     def _full(self, topic: str) -> str:
         return topic_name("", self.namespace, topic)
@@ -195,8 +195,7 @@ class Context:
 
     def __init__(self, domain: int, distribution: str = USUAL_DISTRIBUTION, *, is_local: bool = False,
                  announces: bool = True, router: str = USUAL_ROUTER, listen: str = ""):
-        if not 0 <= domain <= MOST_DOMAIN:
-            raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
+        check_domain(domain)
         self.domain, self.announces, self.has_hashes = domain, announces, distribution not in WITHOUT_HASHES
         zenoh.init_log_from_env_or("error")
         try:

@@ -288,7 +288,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
     parts = Parts(plant) if estimated else None
     run, last = HingedRun(plant, Rows(scene, vehicle, inputs, kept), commands, parts), None
     began = time.perf_counter()
-    watched = [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
+    watched = watched_hinges(scene)
     try:
         for first in range(0, inputs.steps, CHUNK):
             count = min(CHUNK, inputs.steps - first)
@@ -305,9 +305,8 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
         run.take(commands.row_at(inputs.steps, last), inputs.steps)
     except Refused as why:
         if not plant.steps:
-            raise why if str(scene.path) in why.message else scene.refusal_in_file(why, "at t = 0 s") from None
-        at_s = f"at t = {plant.steps * scene.run.step_s:g} s"
-        run.refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
+            raise refusal_of_run(scene, why, "at t = 0 s") from None
+        run.refused = refusal_of_run(scene, why, f"at t = {plant.steps * scene.run.step_s:g} s")
         if len(run.rows) <= -(-plant.steps // every):
             with suppress(Refused):  # of reactions at a posture that has none
                 run.take(commands.row_at(plant.steps, None), plant.steps)
@@ -329,6 +328,16 @@ def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hing
     finally:
         if run.parts:
             run.parts.follow(table[: plant.steps - before_all])
+
+
+def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
+    """Hinges that may come to a stop by themselves, with their numbers."""
+    return [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
+
+
+def refusal_of_run(scene: Scene, why: Refused, when: str = "") -> Refused:
+    """A refusal with the scene's file in front, which some have already."""
+    return why if str(scene.path) in why.message else scene.refusal_in_file(why, when)
 
 
 def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
