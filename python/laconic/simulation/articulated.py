@@ -27,7 +27,7 @@ from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.standing import NO_LOAD
 from laconic.scene.table import Table
-from laconic.simulation.kept_rows import KeptRows, parts_of
+from laconic.simulation.kept_rows import KeptRows, parts_of, refusal_of_run
 from laconic.simulation.loads import Loads
 from laconic.simulation.slipping import USUAL as USUAL_SLIPPING
 from laconic.simulation.steering import Commands
@@ -333,11 +333,6 @@ def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hing
 def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
     """Hinges that may come to a stop by themselves, with their numbers."""
     return [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
-
-
-def refusal_of_run(scene: Scene, why: Refused, when: str = "") -> Refused:
-    """A refusal with the scene's file in front, which some have already."""
-    return why if str(scene.path) in why.message else scene.refusal_in_file(why, when)
 
 
 def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
