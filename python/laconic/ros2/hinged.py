@@ -17,7 +17,7 @@ from laconic.core.articulated import ArticulatedPlant
 from laconic.errors import BadInput, Refused
 from laconic.ros2.base import TWIST_NAMES, Base, Loop, driven_wheels, loop_of
 from laconic.ros2.chassis import STRAIGHT, Chassis, Steering
-from laconic.ros2.motion import Motion, Seen
+from laconic.ros2.motion import Motion, Seen, felt, of_origin
 from laconic.scene import Scene
 from laconic.scene.base import BaseTable
 from laconic.simulation.articulated import follow_rows, start_plant, trailers_of, watched_hinges
@@ -96,17 +96,14 @@ class HingedRobots:
     def look(self, robot: int, period_s: float) -> Seen:
         """As Motion.look; encoders and IMU are ideal, and the IMU shows the mean acceleration since the last look."""
         each = self.robots[robot]
-        motion, rate = each.motion, each.motion.yaw_rate_rad_per_s
-        x, y = self._loads.origin_of(motion)
-        now = (float(motion.velocity_m_per_s[0]) + rate * self._centre.imag,
-               float(motion.velocity_m_per_s[1]) - rate * self._centre.real, rate)
+        motion, (x, y) = each.motion, self._loads.origin_of(each.motion)
+        now = of_origin((self._centre.real, self._centre.imag), motion.velocity_m_per_s, motion.yaw_rate_rad_per_s)
         before, each.before = each.before or now, now
-        ahead, left = ((now[axis] - before[axis]) / period_s if period_s else 0.0 for axis in range(2))
         self._watch(each)
         each.folds.take(motion.hinge_angle_rad, each.steps * self.scene.run.step_s)
         angles, hinges = motion.wheel_angle_rad.astype(float), motion.hinge_angle_rad.astype(float)
         return Seen(x, y, motion.heading_rad, now, angles.tolist(), motion.wheel_speed_rad_per_s.tolist(),
-                    np.concatenate([angles, hinges]), (ahead - rate * now[1], left + rate * now[0], rate), None,
+                    np.concatenate([angles, hinges]), felt(before, now, period_s), None,
                     hinges.tolist(), motion.hinge_rate_rad_per_s.tolist())
 
     def _watch(self, each: Hinged) -> None:

@@ -89,6 +89,21 @@ def product(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
     return found
 
 
+Velocity = tuple[float, float, float]  # ahead, left, yaw rate
+
+
+def of_origin(centre: tuple[float, float], velocity: np.ndarray, yaw_rate: float) -> Velocity:
+    """The velocity of the body frame's origin, of that of the centre of mass and its place in the body frame."""
+    x, y = centre
+    return float(velocity[0]) + yaw_rate * y, float(velocity[1]) - yaw_rate * x, yaw_rate
+
+
+def felt(before: Velocity, now: Velocity, period_s: float) -> Velocity:
+    """What an ideal IMU in the origin shows: the mean acceleration between two velocities, and the yaw rate."""
+    ahead, left = ((now[axis] - before[axis]) / period_s if period_s else 0.0 for axis in range(2))
+    return ahead - now[2] * now[1], left + now[2] * now[0], now[2]
+
+
 class Geometry:
     """Numbers of a scene that both kinds of motion need."""
 
@@ -114,11 +129,6 @@ class Geometry:
         sine, cosine = math.sin(heading_rad), math.cos(heading_rad)
         x, y = self.centre
         return Initial(x_m=x_m + cosine * x - sine * y, y_m=y_m + sine * x + cosine * y, heading_rad=heading_rad)
-
-    def of_origin(self, centre_velocity: np.ndarray, yaw_rate: float) -> tuple[float, float, float]:
-        """The velocity of the body frame's origin."""
-        x, y = self.centre
-        return float(centre_velocity[0]) + yaw_rate * y, float(centre_velocity[1]) - yaw_rate * x, yaw_rate
 
 
 class Single:
@@ -210,7 +220,7 @@ class Singles:
             self.core.lib.laconic_grip_watch(each.grip, plant.contact, plant._at("model"),
                                              plant.reactions(each.held), plant.steps)
         return Seen(pose.origin_x_m, pose.origin_y_m, pose.heading_rad,
-                    self.geometry.of_origin(velocity, float(yaw_rate)), angles.tolist(), speeds.tolist(), shown,
+                    of_origin(self.geometry.centre, velocity, float(yaw_rate)), angles.tolist(), speeds.tolist(), shown,
                     (float(acceleration[0]), float(acceleration[1]), reading.imu_yaw_rate_rad_per_s), supply)
 
     def _counted(self, each: Single, counts: np.ndarray) -> np.ndarray:
@@ -289,14 +299,11 @@ class Lanes:
         plant.c.state = self.batch.state(robot)[0]
         pose = plant.pose
         velocity, yaw_rate = plant.body_velocity()
-        now, before = self.geometry.of_origin(velocity, float(yaw_rate)), self._before[robot]
+        now, before = of_origin(self.geometry.centre, velocity, float(yaw_rate)), self._before[robot]
         self._before[robot] = now
-        rate = float(yaw_rate)
-        ahead, left = ((now[axis] - before[axis]) / period_s if period_s else 0.0 for axis in range(2))
         angles = plant.wheel_angles()
         return Seen(pose.origin_x_m, pose.origin_y_m, pose.heading_rad, now, angles.tolist(),
-                    plant.wheel_speeds().tolist(), angles.astype(float), (ahead - rate * now[1], left + rate * now[0],
-                                                                          rate))
+                    plant.wheel_speeds().tolist(), angles.astype(float), felt(before, now, period_s))
 
     def restart(self, robot: int) -> None:
         """As Motion.restart."""
