@@ -17,10 +17,10 @@ LEFT_OUT = ("session", "run")
 
 @click.command("identify", cls=SeveralAfter)
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
-@click.option("--scene", type=SceneName(), required=True, help="The robot with its nominal values.")
+@click.option("--scene", type=SceneName(hinges=True), required=True, help="The robot with its nominal values.")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
               help="Write the scene with the values found; - for stdout.")
-@click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
+@click.option("--free", metavar="NAMES",
               help="Parameters that may change. Geometry: radius (of each wheel), distance (of all wheels, one "
               "factor), centre-of-mass, place and heading (of the robot against the recorded pose), axle, roller "
               "(angles of each wheel), common-radius (one of all wheels). On ground with friction: drag (of rollers), "
@@ -37,7 +37,7 @@ LEFT_OUT = ("session", "run")
 @click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
               help="Draw true, nominal and identified paths, the first run of each session.")
 @json_flag("Machine-readable result on stdout.")
-def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, prior_percent: float,
+def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str | None, prior_percent: float,
             map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, plot: Path | None,
             json_wanted: bool) -> None:
     """Finds parameters of a scene from LOG..., recorded runs or folders of them.
@@ -51,7 +51,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     stderr.
     """
     from laconic.base.progress import progress_bar
-    from laconic.robot.identify import report
+    from laconic.robot.identify import geometry, report, steered
     from laconic.robot.identify.fitted_toml import fitted_text
     from laconic.robot.identify.geometry import geometry_of
     from laconic.robot.identify.picture import draw
@@ -63,7 +63,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     if not 0.0 < prior_percent <= 100.0:
         raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
     given = read_scene(scene)
-    names = names_in(free)
+    names = names_in(free) if free is not None else steered.USUAL if given.has_hinges else geometry.USUAL
     parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []

@@ -14,7 +14,7 @@ place (identification.structure).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -79,7 +79,8 @@ class Fit:
     asked_information: np.ndarray | None = None
 
 
-def fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, start: Fit | None = None) -> Fit:
+def fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence,
+        start: Fit | Mapping[str, float] | None = None) -> Fit:
     """The parameters that the runs tell; the others stay nominal to the digit. `start`: a fit to begin from."""
     untold: tuple[str, ...] = ()
     asked, information = parameters, None
@@ -106,9 +107,16 @@ def told_share(found: Fit) -> np.ndarray:
     return share
 
 
-def _start(parameters: Parameters, start: Fit | None) -> np.ndarray:
+def values_by_name(start: Fit | Mapping[str, float] | None) -> Mapping[str, float]:
+    """Those of a fit, or as they are."""
+    if isinstance(start, Fit):
+        return dict(zip((p.name for p in start.parameters.each), start.values.tolist(), strict=True))
+    return start or {}
+
+
+def _start(parameters: Parameters, start: Fit | Mapping[str, float] | None) -> np.ndarray:
     """z of the values of another fit; nominal where it has none."""
-    known = {} if start is None else dict(zip((p.name for p in start.parameters.each), start.values, strict=True))
+    known = values_by_name(start)
     off = np.array([known.get(p.name, p.nominal) - p.nominal for p in parameters.each])
     return np.linalg.solve(parameters.factor, off) if len(parameters) else off
 

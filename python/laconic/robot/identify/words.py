@@ -13,6 +13,7 @@ from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.motion import ELECTRIC, inputs_of, stepping
 from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, jacobians_of
+from laconic.robot.identify.steered_evidence import motions
 from laconic.robot.logs import Log
 from laconic.robot.replay.held_wheels import hold
 from laconic.robot.replay.measures import path_length
@@ -137,6 +138,8 @@ def candidate_information(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict
     sharply for being short.
     """
     assert found.asked is not None
+    if scene.has_hinges:
+        return _of_hinges(scene, found, runs)
     core, parameters, information = scene.core(), found.asked, {}
     z = _z_of_found(found)
     base, vehicle = base_of(scene, parameters), parameters.vehicle(base_of(scene, parameters), parameters.values(z))
@@ -147,6 +150,16 @@ def candidate_information(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict
         log = _candidate(scene, vehicle, parameters, np.array(velocity), runs)
         evidence = evidence_of(scene, [log], parameters)
         jacobian = jacobians_of(base, parameters, evidence, z)[0]
+        information[name] = jacobian.T @ jacobian * (_length(log) / _usual_length(runs) / found.scale) ** 2
+    return information
+
+
+def _of_hinges(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict[str, np.ndarray]:
+    assert found.asked is not None
+    parameters, z, information = found.asked, _z_of_found(found), {}
+    base = base_of(scene, parameters)
+    for name, log in motions(scene, parameters.vehicle(base, parameters.values(z)), runs).items():
+        jacobian = jacobians_of(base, parameters, evidence_of(scene, [log], parameters), z)[0]
         information[name] = jacobian.T @ jacobian * (_length(log) / _usual_length(runs) / found.scale) ** 2
     return information
 

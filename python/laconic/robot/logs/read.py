@@ -13,8 +13,8 @@ from laconic.errors import BadInput
 from laconic.robot.logs import poses
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.for_vehicle import spread
-from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, STEERING, Counter, Log
-from laconic.robot.logs.quantity import OF_ANGLE, YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
+from laconic.robot.logs.log import COMMANDED, LEAST_SAMPLES, MEMBERS, PER_WHEEL, STEERING, Counter, Following, Log
+from laconic.robot.logs.quantity import COMMAND, OF_ANGLE, YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
 from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
 from laconic.robot.logs.text_table import metadata_number, metadata_of
@@ -29,7 +29,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     reader = _Reader(source, columns)
     wheels = [reader.at_wheel(columns.quantities[name]) for name in (*PER_WHEEL, STEERING)
               if name in columns.quantities]
-    others = [reader.yaw_rate(columns.quantities.get(YAW_RATE)), reader.pose(columns.quantities.get("pose"))]
+    others = [reader.single(columns.quantities.get(YAW_RATE)), reader.single(columns.quantities.get(COMMANDED)),
+              reader.pose(columns.quantities.get("pose"))]
     sampled = [each for each in (*wheels, *others) if each is not None]
     chosen = choose(source.time_s, sampled, source.is_row, source.hold_s, source.lines,
                     tells_gaps=source.tells_gaps)
@@ -46,6 +47,9 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
         found["yaw_rate_rad_per_s"] = chosen.values[YAW_RATE][:, 0]
     if STEERING in chosen.values:
         found |= {"steering_angle_rad": chosen.values[STEERING], "hinge_names": columns.quantities[STEERING].hinges}
+    if COMMANDED in chosen.values:
+        found["speed_m_per_s"] = chosen.values[COMMANDED][:, 0]
+    found["following"] = _following(columns)
     remarks = (*source.remarks, *reader.remarks, *chosen.remarks)
     is_ordered = any(quantity.wheels for quantity in columns.quantities.values())
     by_radius = tuple(member for name, member in MEMBERS.items()
@@ -56,6 +60,13 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     pose = next((each for each in sampled if each.name == "pose" and each.name in chosen.values), None)
     return log if pose is None else poses.with_pose(log, columns.quantities["pose"], pose, chosen.values["pose"],
                                                source.time_s, chosen.rows)
+
+
+def _following(columns: ColumnMap) -> Following:
+    steering, speed = columns.quantities.get(STEERING), columns.quantities.get(COMMANDED)
+    speed_lag_s = 0.0 if speed is None else speed.lag_s
+    return Following(speed_lag_s=speed_lag_s) if steering is None else Following(
+        steering.kind == COMMAND, steering.lag_s, steering.rate_limit_rad_per_s, steering.curve, speed_lag_s)
 
 
 class _Reader:
@@ -97,7 +108,7 @@ class _Reader:
             row = int(np.argmax(np.isinf(values).any(axis=1)))
             raise BadInput(f"{self.source.path}: {self.source.place(row)}: {quantity.name} is too large in SI units; "
                            "correct the line, or the units and scales in the map")
-        return Sampled(quantity.name, values, quantity.is_optional)
+        return Sampled(quantity.name, values, quantity.is_optional, quantity.kind == COMMAND)
 
     def at_wheel(self, quantity: Quantity) -> Sampled | None:
         """A quantity of each wheel."""
@@ -167,8 +178,8 @@ class _Reader:
                            f"it, or the number of {unit} after which the column begins again")
         return np.inf if quantity.radius_m is None else 2.0 * np.pi * quantity.radius_m / length
 
-    def yaw_rate(self, quantity: Quantity | None) -> Sampled | None:
-        """Of a gyro."""
+    def single(self, quantity: Quantity | None) -> Sampled | None:
+        """Of a gyro, or a commanded speed."""
         found = None if quantity is None else self._raw(quantity)
         return None if quantity is None or found is None else self._usable(quantity, poses.scaled(quantity, found[0]))
 

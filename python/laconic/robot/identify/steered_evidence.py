@@ -1,0 +1,132 @@
+"""What recorded runs with a true pose say about a steered vehicle: rolling without slip, or on ground with friction.
+
+The distance between the predicted path of the tracker and the recorded one counts, as for vehicles without hinges. Far
+from the solution that distance goes around in circles with the robot, so a fit begins with the motions of single
+stretches, each from where the recorded path had got to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from laconic.robot.identify.ground import DIFFERENCE
+from laconic.robot.identify.parameter import Parameters, Vehicle
+from laconic.robot.identify.rolling_evidence import RollingEvidence, Run, path_residual, stretch_errors, stretch_scores
+from laconic.robot.logs import Log
+from laconic.robot.replay.measures import path_length
+from laconic.robot.replay.rolling import path_of
+from laconic.robot.replay.steered_rolling import SteeredRolling
+from laconic.robot.replay.steered_signals import Driven, of_log, seen_by_tracker
+from laconic.robot.replay.steered_slip import SteeredSlip
+from laconic.scene import Scene
+from laconic.scene.ground import slips
+
+ROBUST = 0.1          # relative error of a stretch beyond which it counts less in the rough fit
+WEAK_PRIOR = 0.02     # of the rough fit
+SAMPLES, PERIOD_S = 400, 0.05
+
+
+class SteeredEvidence(RollingEvidence):
+    """Runs of one vehicle, for `solve.fit`."""
+
+    def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log]):
+        super().__init__(scene.core(), scene.path, logs)
+        self.sessions = [str(log.path) for log in logs]
+        self.difference = DIFFERENCE if slips(base) else 0.0
+        self._scene, self._logs = scene, list(logs)
+
+    def paths(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Predicted, as the tracker sees them."""
+        kind = SteeredSlip if slips(vehicle) else SteeredRolling
+        rolling = kind(replace(self._scene, vehicle=vehicle))
+        return [rolling.path(log) for log in self._logs]
+
+    def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
+        return [path_residual(run, path) for run, path in zip(self.runs, self.paths(vehicle), strict=True)]
+
+    def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
+        return [stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1))
+                for run, path, jacobian in zip(self.runs, self.paths(vehicle), jacobians, strict=True)]
+
+    def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
+        return [stretch_errors(run, path) for run, path in zip(self.runs, self.paths(vehicle), strict=True)]
+
+    def rough(self, base: Vehicle, parameters: Parameters) -> dict[str, float]:
+        """Values near the solution, by the motions of single stretches."""
+        def residual(z: np.ndarray) -> np.ndarray:
+            errors = self.errors(parameters.vehicle(base, parameters.values(z)))
+            parts = [(each / weights).ravel() for each, weights in zip(errors, sizes, strict=True)]
+            return np.concatenate([*parts, WEAK_PRIOR * z])
+
+        sizes = [_sizes(run) for run in self.runs]
+        start = np.zeros(len(parameters))
+        if len(parameters):
+            start = least_squares(residual, start, loss="soft_l1", f_scale=ROBUST, ftol=1e-3, xtol=1e-3, max_nfev=30,
+                                  diff_step=1e-3 if self.difference else None, x_scale=1.0).x
+        return dict(zip((p.name for p in parameters.each), parameters.values(start).tolist(), strict=True))
+
+
+def _sizes(run: Run) -> np.ndarray:
+    """Of the motion in a stretch: its usual length twice, one radian."""
+    length = max(float(np.hypot(*np.diff(run.pose[run.cuts, :2], axis=0).T).mean()), 1e-6)
+    return np.array([length, length, 1.0])
+
+
+def made_up(scene: Scene, vehicle: Vehicle, like: Log, time_s: np.ndarray, steering_rad: np.ndarray,
+            speed_m_per_s: np.ndarray, measured: Sequence[int] = ()) -> Log:
+    """A run of a vehicle that rolls without slip: the log's columns are given, its wheels and poses follow.
+
+    `steering_rad`: as the log has it; `speed_m_per_s`: of the middle of the fixed axle; `measured`: the wheels whose
+    turning the log has instead of that speed.
+    """
+    steering = np.broadcast_to(steering_rad[:, None], (len(time_s), _width(like)))
+    log = replace(like, path=Path("motion"), time_s=time_s, steering_angle_rad=steering.copy(), pose_rows=None,
+                  speed_m_per_s=speed_m_per_s, wheel_angle_rad=None, wheel_speed_rad_per_s=None, pose=None, moved=None,
+                  current_A=None, voltage_V=None, set_speed_rad_per_s=None, counter=None, remarks=(), part="")
+    rolling = SteeredRolling(replace(scene, vehicle=vehicle))
+    run = rolling.driven(log)
+    moved = rolling.moved(log, run)
+    path = path_of(moved, np.zeros(3))
+    if len(measured):
+        angles = rolling.rotations(log, run, moved)
+        at = np.searchsorted(run.time_s, time_s - 1e-9)
+        summed = np.vstack([np.zeros(angles.shape[1]), np.cumsum(angles, axis=0)])[at]
+        summed[:, [i for i in range(angles.shape[1]) if i not in measured]] = np.nan
+        log = replace(log, wheel_angle_rad=summed, speed_m_per_s=None)
+    place = (0.0, 0.0) if isinstance(like.pose_point, str) else like.pose_point
+    return replace(log, pose=seen_by_tracker(path, run.time_s, time_s, place, of_log(vehicle)))
+
+
+def _width(log: Log) -> int:
+    return 1 if log.steering_angle_rad is None else log.steering_angle_rad.shape[1]
+
+
+def motions(scene: Scene, vehicle: Vehicle, runs: Sequence[Log]) -> dict[str, Log]:
+    """Runs of the kind that was recorded which another recording could be, by their names."""
+    log = max(runs, key=lambda each: len(each.time_s))
+    steering = log.needs("steering_angle_rad", "identify")
+    reach = float(np.abs(steering).max(initial=0.0)) or 0.3
+    speed = max(float(path_length(each.time_s, each.pose) / each.time_s[-1]) for each in runs if each.pose is not None)
+    time = PERIOD_S * np.arange(SAMPLES + 1)
+    measured = () if log.wheel_angle_rad is None and log.wheel_speed_rad_per_s is None else tuple(
+        np.flatnonzero(~np.isnan(log.rotation_rad()).any(axis=0)))
+    weave = reach * np.sin(2.0 * np.pi * time / 4.0)
+    kinds: Mapping[str, tuple[Any, float]] = {
+        "straight ahead": (0.0, speed), "a circle to the left": (reach, speed), "a circle to the right": (-reach, speed),
+        "turns to both sides": (weave, speed), "turns to both sides in reverse": (weave, -speed),
+        "a circle at twice the speed": (reach, 2.0 * speed)}
+    found = {}
+    for name, (angle, pace) in kinds.items():
+        ramp = np.minimum(1.0, time / 2.0) if measured else 1.0
+        found[name] = made_up(scene, vehicle, log, time, angle + np.zeros(len(time)), pace * ramp + np.zeros(len(time)),
+                              measured)
+    return found
+
+
+__all__ = ["Driven", "SteeredEvidence", "made_up", "motions"]
