@@ -17,7 +17,14 @@ from scipy.optimize import least_squares
 
 from laconic.robot.identify.ground import DIFFERENCE
 from laconic.robot.identify.parameter import Parameters, Vehicle
-from laconic.robot.identify.rolling_evidence import RollingEvidence, Run, path_residual, stretch_errors, stretch_scores
+from laconic.robot.identify.rolling_evidence import (
+    STRETCHES,
+    RollingEvidence,
+    Run,
+    path_residual,
+    stretch_errors,
+    stretch_scores,
+)
 from laconic.robot.logs import Log
 from laconic.robot.replay.measures import path_length
 from laconic.robot.replay.rolling import path_of
@@ -33,7 +40,9 @@ SAMPLES, PERIOD_S = 400, 0.05
 
 
 class SteeredEvidence(RollingEvidence):
-    """Runs of one vehicle, for `solve.fit`."""
+    """Runs of one vehicle, for `solve.fit`. There are many parameters and few runs: each stretch is an observation."""
+
+    directions = STRETCHES
 
     def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log]):
         super().__init__(scene.core(), scene.path, logs)

@@ -60,8 +60,7 @@ class SteeredRolling:
     def moved(self, log: Log, run: Driven | None = None) -> np.ndarray:
         """Displacements x, y, angle of the body's frame from instant to instant, in it."""
         run = self.driven(log) if run is None else run
-        angles = self.hinge_angles(log, run.steering_rad)
-        table, given = self._equations(angles, run)
+        table, given = self._equations(*self._turns(log, run), run)
         normal = np.einsum("nij,nik->njk", table, table)
         right = np.einsum("nij,ni->nj", table, given)
         size = np.trace(normal, axis1=1, axis2=2) / 3.0
@@ -74,12 +73,18 @@ class SteeredRolling:
         found[weak] = (np.linalg.pinv(table[weak], rcond=LEAST) @ given[weak][:, :, None])[:, :, 0]
         return found
 
-    def _equations(self, angles: Mapping[str, np.ndarray], run: Driven) -> tuple[np.ndarray, np.ndarray]:
+    def _turns(self, log: Log, run: Driven) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Of each hinge: its mean angle from instant to instant, and how far it turns."""
+        return self.hinge_angles(log, run.between_rad), {
+            name: np.diff(angle) for name, angle in self.hinge_angles(log, run.steering_rad).items()}
+
+    def _equations(self, angles: Mapping[str, np.ndarray], turned: Mapping[str, np.ndarray],
+                   run: Driven) -> tuple[np.ndarray, np.ndarray]:
         rows, sides = list[np.ndarray](), list[np.ndarray]()
         count, rotation, lines = len(run.time_s) - 1, run.rotation_rad, set[tuple[str, float, float]]()
         measured = ~np.isnan(rotation).any(axis=0)
         for index, wheel in enumerate(self.scene.vehicle["wheel"]):
-            placed = self._placed(wheel, angles, count)
+            placed = self._placed(wheel, angles, turned, count)
             if placed is None:
                 continue
             place, axle, swept = placed
@@ -104,10 +109,10 @@ class SteeredRolling:
 
     def rotations(self, log: Log, run: Driven, moved: np.ndarray) -> np.ndarray:
         """How far each wheel turns while the body moves so; NaN of wheels behind hinges without an angle."""
-        angles = self.hinge_angles(log, run.steering_rad)
+        angles, turned = self._turns(log, run)
         found = np.full((len(moved), len(self._radii)), np.nan)
         for index, wheel in enumerate(self.scene.vehicle["wheel"]):
-            placed = self._placed(wheel, angles, len(moved))
+            placed = self._placed(wheel, angles, turned, len(moved))
             if placed is not None:
                 place, axle, swept = placed
                 way = moved[:, 0] + 1j * moved[:, 1] + 1j * moved[:, 2] * place + swept
@@ -148,8 +153,8 @@ class SteeredRolling:
         return {name: np.arctan2(curvature * (x - axle_x_m), 1.0 - curvature * y)
                 for name, (x, y) in zip(names, places, strict=True)}
 
-    def _placed(self, wheel: Mapping[str, Any], angles: Mapping[str, np.ndarray], count: int
-                ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    def _placed(self, wheel: Mapping[str, Any], angles: Mapping[str, np.ndarray], turned: Mapping[str, np.ndarray],
+                count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Place and axle of a wheel in the body's frame, midway from sample to sample, and how far turning hinges
         moved it; None where a hinge that carries it has no angle."""
         place = np.full(count, complex(wheel["x_m"], wheel["y_m"]))
@@ -158,9 +163,8 @@ class SteeredRolling:
         while name != CARRIAGE:
             if name not in angles:
                 return None
-            body, angle = self._bodies[name], angles[name]
-            turn = np.exp(0.5j * (angle[1:] + angle[:-1]))
-            swept = turn * (swept + 1j * np.diff(angle) * place)
+            body, turn = self._bodies[name], np.exp(1j * angles[name])
+            swept = turn * (swept + 1j * turned[name] * place)
             place = complex(body["hinge_x_m"], body["hinge_y_m"]) + turn * place
             axle, name = turn * axle, body["parent"]
         return place, axle, swept

@@ -16,7 +16,7 @@ import numpy as np
 from laconic.robot.logs.log import LEAST_SAMPLES, Log, counted
 
 STEP_S = 0.02           # at most, between instants of a run by commands
-GAP_S, GAP = 0.5, 5.0   # least length of a gap, and in usual times between lines
+GAP_S, GAP = 1.0, 5.0   # least length of a gap, and in usual times between lines
 LEAST_ROWS = 5          # of a part between gaps
 START_S = 0.15          # from whose poses comes the speed at the start
 
@@ -62,6 +62,7 @@ class Driven:
 
     time_s: np.ndarray
     steering_rad: np.ndarray            # instants × columns of the log
+    between_rad: np.ndarray             # (instants − 1) × columns: the mean from instant to instant
     rotation_rad: np.ndarray            # (instants − 1) × wheels, NaN: not measured
     way_m: np.ndarray | None            # (instants − 1), of the middle of the fixed axle, by commands
 
@@ -72,30 +73,22 @@ def driven(log: Log, own: OfLog, wheels: int) -> Driven:
     given, following = curved(angle, log.following.curve, own), log.following
     lag_s = max(following.lag_s + own.lag_s, 0.0)
     limit = min(following.rate_limit_rad_per_s, own.rate_limit_rad_per_s)
-    time = log.time_s
-    if log.speed_m_per_s is None and not following.is_command:
-        angles = given if lag_s == 0.0 and limit == math.inf else np.column_stack([
-            followed(time, column, column[0], lag_s, limit) for column in given.T])
-        return Driven(time, angles, _rotations(log, wheels), None)
-    grid, row = _grid(time)
-    held = given[row] if following.is_command else np.column_stack([np.interp(grid, time, c) for c in given.T])
-    angles = held if lag_s == 0.0 and limit == math.inf and not following.is_command else np.column_stack([
-        followed(grid, column, column[0], lag_s, limit) for column in held.T])
+    by_commands = following.is_command or log.speed_m_per_s is not None
+    grid, row = _grid(log.time_s) if by_commands else (log.time_s, np.arange(len(log.time_s)))
+    held = given[row] if following.is_command or not by_commands else np.column_stack([
+        np.interp(grid, log.time_s, column) for column in given.T])
+    angles, between = held, 0.5 * (held[1:] + held[:-1])
+    if following.is_command or lag_s > 0.0 or limit < math.inf:
+        pairs = [followed(grid, column, column[0], lag_s, limit) for column in held.T]
+        angles, between = (np.column_stack(each) for each in zip(*pairs, strict=True))
+    steps = np.diff(grid)
     if log.speed_m_per_s is None:
-        share = np.diff(grid) / np.diff(time)[row[:-1]]
-        return Driven(grid, angles, _rotations(log, wheels)[row[:-1]] * share[:, None], None)
-    speed_lag_s = max(following.speed_lag_s + own.speed_lag_s, 0.0)
-    wanted = own.speed_gain * log.speed_m_per_s[row]
+        share = steps / np.diff(log.time_s)[row[:-1]]
+        return Driven(grid, angles, between, log.rotation_rad()[row[:-1]] * share[:, None], None)
+    wanted, speed_lag_s = own.speed_gain * log.speed_m_per_s[row], max(following.speed_lag_s + own.speed_lag_s, 0.0)
     first = _first_speed(log, float(wanted[0])) if speed_lag_s > 0.0 else float(wanted[0])
-    speed = followed(grid, wanted, first, speed_lag_s, math.inf)
-    ways = wanted[:-1] if speed_lag_s == 0.0 else 0.5 * (speed[1:] + speed[:-1])
-    return Driven(grid, angles, np.full((len(grid) - 1, wheels), np.nan), ways * np.diff(grid))
-
-
-def _rotations(log: Log, wheels: int) -> np.ndarray:
-    if log.wheel_angle_rad is None and log.wheel_speed_rad_per_s is None and log.speed_m_per_s is not None:
-        return np.full((len(log.time_s) - 1, wheels), np.nan)
-    return log.rotation_rad()
+    speed = followed(grid, wanted, first, speed_lag_s, math.inf)[1]
+    return Driven(grid, angles, between, np.full((len(steps), wheels), np.nan), speed * steps)
 
 
 def curved(angle: np.ndarray, curve: tuple[tuple[float, float], ...], own: OfLog) -> np.ndarray:
@@ -115,18 +108,28 @@ def piecewise(x: np.ndarray, at: np.ndarray, value: np.ndarray) -> np.ndarray:
     return found
 
 
-def followed(time_s: np.ndarray, wanted: np.ndarray, first: float, lag_s: float, limit: float) -> np.ndarray:
-    """What follows a target that is held from each instant on, with a lag and at a limited rate."""
+def followed(time_s: np.ndarray, wanted: np.ndarray, first: float, lag_s: float, limit: float
+             ) -> tuple[np.ndarray, np.ndarray]:
+    """What follows a target that is held from each instant on, with a lag and at a limited rate: at the instants, and
+    its mean from each to the next, which tells lags that are shorter than that."""
     steps = np.diff(time_s)
-    found = np.empty(len(wanted))
+    found, means = np.empty(len(wanted)), np.empty(len(steps))
     found[0] = value = first
     shares = (1.0 - np.exp(-steps / lag_s) if lag_s > 0.0 else np.ones(len(steps))).tolist()
-    for index, (target, share, most) in enumerate(
-            zip(wanted[:-1].tolist(), shares, (limit * steps).tolist(), strict=True), 1):
-        change = share * (target - value)
-        value += min(max(change, -most), most)
-        found[index] = value
-    return found
+    left = (lag_s * np.array(shares) / steps).tolist()
+    for index, (target, share, rest, most) in enumerate(
+            zip(wanted[:-1].tolist(), shares, left, (limit * steps).tolist(), strict=True)):
+        off = target - value
+        change = share * off
+        if -most <= change <= most:
+            means[index] = target - rest * off
+            value += change
+        else:
+            change = most if change > 0.0 else -most
+            means[index] = value + 0.5 * change
+            value += change
+        found[index + 1] = value
+    return found, means
 
 
 def _grid(time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -183,7 +186,7 @@ def parts_of(log: Log) -> list[Log]:
     """
     steps = np.diff(log.time_s)
     ends = np.flatnonzero(steps > max(GAP_S, GAP * float(np.median(steps)))) + 1
-    if not len(ends):
+    if not len(ends) or log.part:
         return [log]
     edges = [0, *ends.tolist(), len(log.time_s)]
     pieces = [(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True) if high - low >= LEAST_ROWS]
