@@ -55,7 +55,7 @@ class Run:
 class RollingEvidence:
     """Runs with a true pose, for `solve.fit`."""
 
-    directions = 2
+    directions: float = 2
     difference = 0.0
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):

@@ -45,7 +45,7 @@ class Evidence(Protocol):
         """Of each run."""
 
     @property
-    def directions(self) -> int:
+    def directions(self) -> float:
         """Independent components of a residual at one instant."""
 
     @property
@@ -125,7 +125,7 @@ def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np
     sessions = list(evidence.sessions)
     in_session = np.array([1.0 / sessions.count(name) for name in sessions])
     freedom = len(set(sessions)) * evidence.directions
-    weights = np.ones(len(sessions))
+    weights, counts = np.ones(len(sessions)), getattr(evidence, "counts_stretches", False)
 
     def stacked(z: np.ndarray, factors: np.ndarray) -> np.ndarray:
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
@@ -139,7 +139,7 @@ def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np
         before, scale = scale, _scale(np.concatenate([b * f for b, f in zip(blocks, factors, strict=True)]), freedom)
         change, taken = abs(scale / before - 1.0), weights
         if change < FAR_FROM_SETTLED:  # before, what a strong prior leaves of a run is no outlier
-            weights = _huber(np.array([np.sqrt(block @ block) for block in blocks]))
+            weights = _huber(np.array([np.sqrt(block @ block / (len(block) if counts else 1)) for block in blocks]))
         is_settled = change < (ROUGHLY_SETTLED if evidence.difference else SETTLED)
         if is_settled and np.abs(weights - taken).max() < SAME_WEIGHT:
             break
@@ -162,7 +162,7 @@ def _least(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: 
     return found
 
 
-def _scale(residual: np.ndarray, freedom: int) -> float:
+def _scale(residual: np.ndarray, freedom: float) -> float:
     return max(float(np.sqrt(residual @ residual / freedom)), SMALLEST_SCALE)
 
 

@@ -184,6 +184,7 @@ MAKERS: dict[str, Maker] = {
     "steering-lag": _one("lag_s", "lag of the steering", "steering-lag", "s", 0.0, LAG_SD_S),
     "steering-rate": _rate,
     "speed-gain": _one("speed_gain", "gain of the speed", "speed-gain", "", 1.0, SPEED_SD, LEAST_SHARE),
+    "speed-offset": _one("speed_offset_m_per_s", "offset of the speed", "speed-offset", "m/s", 0.0, 0.1),
     "speed-lag": _one("speed_lag_s", "lag of the speed", "speed-lag", "s", 0.0, LAG_SD_S),
     "place": lambda scene, _: [_of_log(f"tracker_{axis}_m", f"place of the tracker, {axis}", "place", "m", 0.0,
                                        TRACKER_SD_M) for axis in "xy"],

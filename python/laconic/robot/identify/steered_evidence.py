@@ -1,8 +1,8 @@
 """What recorded runs with a true pose say about a steered vehicle: rolling without slip, or on ground with friction.
 
-The distance between the predicted path of the tracker and the recorded one counts, as for vehicles without hinges. Far
-from the solution that distance goes around in circles with the robot, so a fit begins with the motions of single
-stretches, each from where the recorded path had got to.
+What counts is the motion of each stretch of about a second, from where the recorded path had got to. A whole path goes
+around in circles with its robot, so that its distance from the recorded one has many least values, and the errors of
+all its stretches are in it.
 """
 
 from __future__ import annotations
@@ -17,14 +17,7 @@ from scipy.optimize import least_squares
 
 from laconic.robot.identify.ground import DIFFERENCE
 from laconic.robot.identify.parameter import Parameters, Vehicle
-from laconic.robot.identify.rolling_evidence import (
-    STRETCHES,
-    RollingEvidence,
-    Run,
-    path_residual,
-    stretch_errors,
-    stretch_scores,
-)
+from laconic.robot.identify.rolling_evidence import RollingEvidence, stretch_errors
 from laconic.robot.logs import Log
 from laconic.robot.replay.measures import path_length
 from laconic.robot.replay.rolling import path_of
@@ -34,20 +27,27 @@ from laconic.robot.replay.steered_slip import SteeredSlip
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
-ROBUST = 0.1          # relative error of a stretch beyond which it counts less in the rough fit
+STRETCH_S = 1.0       # long enough that the noise of poses is small in it
+ROBUST = 0.1          # m or rad: an error of a stretch beyond which it counts less in the rough fit
 WEAK_PRIOR = 0.02     # of the rough fit
+USUAL = 1.4826        # standard deviation over the median of sizes
+LEAST_SIZE = 1e-6
 SAMPLES, PERIOD_S = 400, 0.05
 
 
 class SteeredEvidence(RollingEvidence):
-    """Runs of one vehicle, for `solve.fit`. There are many parameters and few runs: each stretch is an observation."""
+    """Runs of one vehicle, for `solve.fit`: what the motion of each stretch is off by, ahead, to the left, in turn, in
+    units of the usual error of each."""
 
-    directions = STRETCHES
+    counts_stretches = True
 
-    def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log]):
+    def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log], sizes: np.ndarray | None = None):
         super().__init__(scene.core(), scene.path, logs)
-        self.sessions = [str(log.path) for log in logs]
+        self.runs = [replace(run, cuts=_cuts(log)) for run, log in zip(self.runs, logs, strict=True)]
+        self.sessions = [f"{log.path} {log.part}" for log in logs]
         self.difference = DIFFERENCE if slips(base) else 0.0
+        self.directions = 3 * sum(len(run.cuts) - 1 for run in self.runs) / len(self.runs)
+        self.sizes = np.ones(3) if sizes is None else sizes
         self._scene, self._logs = scene, list(logs)
 
     def paths(self, vehicle: Vehicle) -> list[np.ndarray]:
@@ -56,35 +56,52 @@ class SteeredEvidence(RollingEvidence):
         rolling = kind(replace(self._scene, vehicle=vehicle))
         return [rolling.path(log) for log in self._logs]
 
-    def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
-        return [path_residual(run, path) for run, path in zip(self.runs, self.paths(vehicle), strict=True)]
-
-    def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
-        return [stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1))
-                for run, path, jacobian in zip(self.runs, self.paths(vehicle), jacobians, strict=True)]
-
     def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Of each stretch of each run."""
         return [stretch_errors(run, path) for run, path in zip(self.runs, self.paths(vehicle), strict=True)]
 
-    def rough(self, base: Vehicle, parameters: Parameters) -> dict[str, float]:
-        """Values near the solution, by the motions of single stretches."""
-        def residual(z: np.ndarray) -> np.ndarray:
-            errors = self.errors(parameters.vehicle(base, parameters.values(z)))
-            parts = [(each / weights).ravel() for each, weights in zip(errors, sizes, strict=True)]
-            return np.concatenate([*parts, WEAK_PRIOR * z])
+    def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """In units of their usual sizes."""
+        return [(each / self.sizes).ravel() for each in self.errors(vehicle)]
 
-        sizes = [_sizes(run) for run in self.runs]
+    def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
+        """Of each stretch."""
+        return [np.einsum("sc,scp->sp", each / self.sizes, jacobian.reshape(*each.shape, -1))
+                for each, jacobian in zip(self.errors(vehicle), jacobians, strict=True)]
+
+    def rough(self, base: Vehicle, parameters: Parameters) -> dict[str, float]:
+        """Values near the solution."""
+        def vehicle(z: np.ndarray) -> Vehicle:
+            return parameters.vehicle(base, parameters.values(z))
+
+        def residual(z: np.ndarray) -> np.ndarray:
+            return np.concatenate([*(each.ravel() for each in self.errors(vehicle(z))), WEAK_PRIOR * z])
+
         start = np.zeros(len(parameters))
         if len(parameters):
             start = least_squares(residual, start, loss="soft_l1", f_scale=ROBUST, ftol=1e-3, xtol=1e-3, max_nfev=30,
                                   diff_step=1e-3 if self.difference else None, x_scale=1.0).x
         return dict(zip((p.name for p in parameters.each), parameters.values(start).tolist(), strict=True))
 
+    def sized(self, base: Vehicle, parameters: Parameters, values: Mapping[str, float]) -> None:
+        """Takes the usual sizes from what these values leave."""
+        given = np.array([values.get(p.name, p.nominal) for p in parameters.each])
+        self.sizes = sizes_of(self.errors(parameters.vehicle(base, given)))
 
-def _sizes(run: Run) -> np.ndarray:
-    """Of the motion in a stretch: its usual length twice, one radian."""
-    length = max(float(np.hypot(*np.diff(run.pose[run.cuts, :2], axis=0).T).mean()), 1e-6)
-    return np.array([length, length, 1.0])
+
+def sizes_of(errors: Sequence[np.ndarray]) -> np.ndarray:
+    """The usual size of each component, which few large ones hardly change."""
+    found: np.ndarray = np.maximum(USUAL * np.median(np.abs(np.concatenate(list(errors))), axis=0), LEAST_SIZE)
+    return found
+
+
+def _cuts(log: Log) -> np.ndarray:
+    """Recorded samples about STRETCH_S apart."""
+    seen = log.seen
+    count = max(1, round(float(log.time_s[seen[-1]] - log.time_s[seen[0]]) / STRETCH_S))
+    wanted = np.linspace(log.time_s[seen[0]], log.time_s[seen[-1]], count + 1)
+    found: np.ndarray = np.unique(seen[np.searchsorted(log.time_s[seen], wanted - 1e-9)])
+    return found
 
 
 def made_up(scene: Scene, vehicle: Vehicle, like: Log, time_s: np.ndarray, steering_rad: np.ndarray,
@@ -109,7 +126,7 @@ def made_up(scene: Scene, vehicle: Vehicle, like: Log, time_s: np.ndarray, steer
         summed[:, [i for i in range(angles.shape[1]) if i not in measured]] = np.nan
         log = replace(log, wheel_angle_rad=summed, speed_m_per_s=None)
     place = (0.0, 0.0) if isinstance(like.pose_point, str) else like.pose_point
-    return replace(log, pose=seen_by_tracker(path, run.time_s, time_s, place, of_log(vehicle)))
+    return replace(log, pose=seen_by_tracker(path, run.time_s, log, place, of_log(vehicle)))
 
 
 def _width(log: Log) -> int:

@@ -90,8 +90,10 @@ def parts(logs: Sequence[Log], leave_out: str) -> list[list[Log]]:
 
 def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters, start: Fit | None = None) -> Fit:
     base, evidence = base_of(scene, parameters), evidence_of(scene, logs, parameters)
-    if isinstance(evidence, SteeredEvidence) and start is None:
-        return fit(base, parameters, evidence, _near(scene, logs, parameters, evidence))
+    if isinstance(evidence, SteeredEvidence):
+        begun = values_by_name(start) if start is not None else _near(scene, logs, parameters, evidence)
+        evidence.sized(base, parameters, begun)
+        return fit(base, parameters, evidence, begun)
     return fit(base, parameters, evidence, start)
 
 

@@ -13,7 +13,7 @@ from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.motion import ELECTRIC, inputs_of, stepping
 from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, jacobians_of
-from laconic.robot.identify.steered_evidence import motions
+from laconic.robot.identify.steered_evidence import SteeredEvidence, motions, sizes_of
 from laconic.robot.logs import Log
 from laconic.robot.replay.held_wheels import hold
 from laconic.robot.replay.measures import path_length
@@ -158,9 +158,10 @@ def _of_hinges(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict[str, np.nd
     assert found.asked is not None
     parameters, z, information = found.asked, _z_of_found(found), {}
     base = base_of(scene, parameters)
+    sizes = sizes_of(SteeredEvidence(scene, base, runs).errors(parameters.vehicle(base, parameters.values(z))))
     for name, log in motions(scene, parameters.vehicle(base, parameters.values(z)), runs).items():
-        jacobian = jacobians_of(base, parameters, evidence_of(scene, [log], parameters), z)[0]
-        information[name] = jacobian.T @ jacobian * (_length(log) / _usual_length(runs) / found.scale) ** 2
+        jacobian = jacobians_of(base, parameters, SteeredEvidence(scene, base, [log], sizes), z)[0]
+        information[name] = jacobian.T @ jacobian / found.scale**2
     return information
 
 

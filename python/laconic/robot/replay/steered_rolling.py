@@ -19,7 +19,7 @@ from laconic.errors import BadInput
 from laconic.robot.logs.log import Log
 from laconic.robot.replay.placing import fitted, start_of
 from laconic.robot.replay.rolling import path_of, wheel_radii
-from laconic.robot.replay.steered_signals import Driven, begun_at, driven, of_log, seen_by_tracker
+from laconic.robot.replay.steered_signals import Driven, begun_at, driven, first_bend, of_log, seen_by_tracker
 from laconic.scene import Scene
 from laconic.simulation.loads import centre_of
 
@@ -45,14 +45,26 @@ class SteeredRolling:
 
     def driven(self, log: Log) -> Driven:
         """What drives the vehicle."""
-        return driven(log, of_log(self.scene.vehicle), len(self.scene.vehicle["wheel"]))
+        return driven(log, of_log(self.scene.vehicle), len(self.scene.vehicle["wheel"]), self._first_angle(log))
+
+    def _first_angle(self, log: Log) -> float | None:
+        """Of a wheel on the middle line, by the first poses."""
+        own = [body["hinge_x_m"] for hinge, body in zip(self.scene.hinges, self.scene.vehicle["body"], strict=True)
+               if hinge.kind in STEERED]
+        fixed = fixed_wheels(self.scene.vehicle)
+        bend = first_bend(log) if log.following.is_command and fixed and own else None
+        if bend is None or log.steering_angle_rad is None or log.steering_angle_rad.shape[1] > 1:
+            return None
+        if log.speed_m_per_s is not None and log.speed_m_per_s[0] < 0.0:
+            bend = -bend
+        return math.atan(bend * (float(np.mean(own)) - self.driven_point()[0].real))
 
     def placed(self, log: Log, time_s: np.ndarray, path: np.ndarray) -> np.ndarray:
         """A path of the body's frame as the log's tracker sees it, where the log says that it was."""
         point = log.pose_point
         place = point if not isinstance(point, str) else (0.0, 0.0) if point == "origin" else (
             self._centre.real, self._centre.imag)
-        seen = seen_by_tracker(path, time_s, log.time_s, place, of_log(self.scene.vehicle))
+        seen = seen_by_tracker(path, time_s, log, place, of_log(self.scene.vehicle))
         if log.pose is not None and not log.has_heading:
             return fitted(seen, log.seen, log.pose[log.seen, :2])
         return begun_at(seen, start_of(log))
@@ -70,7 +82,8 @@ class SteeredRolling:
                            "in the map, [steering_angle] and [wheel_angle]")
         normal[weak] = np.eye(3)
         found: np.ndarray = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-        found[weak] = (np.linalg.pinv(table[weak], rcond=LEAST) @ given[weak][:, :, None])[:, :, 0]
+        if weak.any():
+            found[weak] = (np.linalg.pinv(table[weak], rcond=LEAST) @ given[weak][:, :, None])[:, :, 0]
         return found
 
     def _turns(self, log: Log, run: Driven) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:

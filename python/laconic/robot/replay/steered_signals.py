@@ -18,6 +18,7 @@ from laconic.robot.logs.log import LEAST_SAMPLES, Log, counted
 STEP_S = 0.02           # at most, between instants of a run by commands
 GAP_S, GAP = 1.0, 5.0   # least length of a gap, and in usual times between lines
 LEAST_ROWS = 5          # of a part between gaps
+TINY_S, LEAST_WAY_M = 1e-9, 0.02
 START_S = 0.15          # from whose poses comes the speed at the start
 
 
@@ -31,6 +32,7 @@ class OfLog:
     lag_s: float = 0.0                  # of the steering, besides the map's
     rate_limit_rad_per_s: float = math.inf
     speed_gain: float = 1.0
+    speed_offset_m_per_s: float = 0.0   # in the direction of the command
     speed_lag_s: float = 0.0
     tracker_x_m: float = 0.0            # its place on the robot, in its frame
     tracker_y_m: float = 0.0
@@ -67,28 +69,35 @@ class Driven:
     way_m: np.ndarray | None            # (instants − 1), of the middle of the fixed axle, by commands
 
 
-def driven(log: Log, own: OfLog, wheels: int) -> Driven:
-    """The run of a log whose steering is there."""
+def driven(log: Log, own: OfLog, wheels: int, first_rad: float | None = None) -> Driven:
+    """The run of a log whose steering is there. `first_rad`: the angle at which one that follows commands begins."""
     angle = log.needs("steering_angle_rad", "rolling of a steered vehicle")
     given, following = curved(angle, log.following.curve, own), log.following
     lag_s = max(following.lag_s + own.lag_s, 0.0)
     limit = min(following.rate_limit_rad_per_s, own.rate_limit_rad_per_s)
-    by_commands = following.is_command or log.speed_m_per_s is not None
-    grid, row = _grid(log.time_s) if by_commands else (log.time_s, np.arange(len(log.time_s)))
-    held = given[row] if following.is_command or not by_commands else np.column_stack([
-        np.interp(grid, log.time_s, column) for column in given.T])
+    shift_s = own.clock_lag_s if by_commands(log) else 0.0
+    grid, row, line = _grid(log.time_s, shift_s) if by_commands(log) else (log.time_s, *2 * (np.arange(len(angle)),))
+    held = given[row] if following.is_command or not by_commands(log) else np.column_stack([
+        np.interp(grid - shift_s, log.time_s, column) for column in given.T])
     angles, between = held, 0.5 * (held[1:] + held[:-1])
     if following.is_command or lag_s > 0.0 or limit < math.inf:
-        pairs = [followed(grid, column, column[0], lag_s, limit) for column in held.T]
+        pairs = [followed(grid, column, column[0] if first_rad is None or lag_s == 0.0 else first_rad, lag_s, limit)
+                 for column in held.T]
         angles, between = (np.column_stack(each) for each in zip(*pairs, strict=True))
     steps = np.diff(grid)
     if log.speed_m_per_s is None:
-        share = steps / np.diff(log.time_s)[row[:-1]]
-        return Driven(grid, angles, between, log.rotation_rad()[row[:-1]] * share[:, None], None)
-    wanted, speed_lag_s = own.speed_gain * log.speed_m_per_s[row], max(following.speed_lag_s + own.speed_lag_s, 0.0)
+        share = steps / np.diff(log.time_s)[line[:-1]]
+        return Driven(grid, angles, between, log.rotation_rad()[line[:-1]] * share[:, None], None)
+    commanded, speed_lag_s = log.speed_m_per_s[row], max(following.speed_lag_s + own.speed_lag_s, 0.0)
+    wanted = own.speed_gain * commanded + own.speed_offset_m_per_s * np.sign(commanded)
     first = _first_speed(log, float(wanted[0])) if speed_lag_s > 0.0 else float(wanted[0])
     speed = followed(grid, wanted, first, speed_lag_s, math.inf)[1]
     return Driven(grid, angles, between, np.full((len(steps), wheels), np.nan), speed * steps)
+
+
+def by_commands(log: Log) -> bool:
+    """Whether something in the log is held, so that instants between its lines count."""
+    return log.following.is_command or log.speed_m_per_s is not None
 
 
 def curved(angle: np.ndarray, curve: tuple[tuple[float, float], ...], own: OfLog) -> np.ndarray:
@@ -112,33 +121,48 @@ def followed(time_s: np.ndarray, wanted: np.ndarray, first: float, lag_s: float,
              ) -> tuple[np.ndarray, np.ndarray]:
     """What follows a target that is held from each instant on, with a lag and at a limited rate: at the instants, and
     its mean from each to the next, which tells lags that are shorter than that."""
-    steps = np.diff(time_s)
-    found, means = np.empty(len(wanted)), np.empty(len(steps))
+    found, ways = np.empty(len(wanted)), np.empty(len(wanted) - 1)
+    changes = np.flatnonzero(np.diff(wanted[:-1])) + 1
     found[0] = value = first
-    shares = (1.0 - np.exp(-steps / lag_s) if lag_s > 0.0 else np.ones(len(steps))).tolist()
-    left = (lag_s * np.array(shares) / steps).tolist()
-    for index, (target, share, rest, most) in enumerate(
-            zip(wanted[:-1].tolist(), shares, left, (limit * steps).tolist(), strict=True)):
-        off = target - value
-        change = share * off
-        if -most <= change <= most:
-            means[index] = target - rest * off
-            value += change
-        else:
-            change = most if change > 0.0 else -most
-            means[index] = value + 0.5 * change
-            value += change
-        found[index + 1] = value
-    return found, means
+    for low, high in zip([0, *changes.tolist()], [*changes.tolist(), len(ways)], strict=True):
+        after = time_s[low:high + 1] - time_s[low]
+        values, summed = _approach(after, value, float(wanted[low]), lag_s, limit)
+        found[low + 1:high + 1], ways[low:high], value = values[1:], np.diff(summed), float(values[-1])
+    return found, ways / np.diff(time_s)
 
 
-def _grid(time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(instants at most STEP_S apart that hold all lines, the line from which on the log says each)."""
-    counts = np.maximum(1, np.ceil(np.diff(time_s) / STEP_S - 1e-9)).astype(int)
-    row = np.repeat(np.arange(len(counts)), counts)
-    part = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
-    grid = time_s[row] + part * (np.diff(time_s) / counts)[row]
-    return np.append(grid, time_s[-1]), np.append(row, len(time_s) - 1)
+def _approach(after_s: np.ndarray, value: float, target: float, lag_s: float, limit: float
+              ) -> tuple[np.ndarray, np.ndarray]:
+    """(a value on its way to a constant target, its integral): at the limit's rate, then exponential."""
+    off = target - value
+    limited_s = max(0.0, abs(off) / limit - lag_s)
+    rate = math.copysign(limit, off) if limited_s else 0.0
+    early = np.minimum(after_s, limited_s)
+    left, late_s = off - rate * limited_s, after_s - early
+    share = np.exp(-late_s / lag_s) if lag_s > 0.0 else np.where(late_s > 0.0, 0.0, 1.0)
+    is_late = after_s > limited_s
+    values = np.where(is_late, target - left * share, value + rate * early)
+    summed = value * early + 0.5 * rate * early**2 + target * late_s - left * lag_s * (1.0 - share)
+    if lag_s == 0.0 and not limited_s and len(values) > 1:
+        values[0] = value
+    return values, summed
+
+
+def _grid(time_s: np.ndarray, shift_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(instants at most STEP_S apart that hold all lines and all changes of commands, which come so much later than
+    their lines; the line whose command holds from each on; the line that each follows)."""
+    changes = time_s + shift_s
+    inside = changes[(changes > time_s[0] + TINY_S) & (changes < time_s[-1] - TINY_S)]
+    edges = np.unique(np.concatenate([time_s, inside])) if shift_s else time_s
+    if shift_s:
+        edges = np.concatenate([edges[:1], edges[1:][np.diff(edges) > TINY_S]])
+        edges[-1] = time_s[-1]
+    counts = np.maximum(1, np.ceil(np.diff(edges) / STEP_S - 1e-9)).astype(int)
+    part = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(part)) - np.repeat(np.cumsum(counts) - counts, counts)
+    grid = np.append(edges[part] + number * (np.diff(edges) / counts)[part], edges[-1])
+    row = np.clip(np.searchsorted(changes, grid + TINY_S, "right") - 1, 0, len(time_s) - 1)
+    return grid, row, np.clip(np.searchsorted(time_s, grid + TINY_S, "right") - 1, 0, len(time_s) - 1)
 
 
 def _first_speed(log: Log, otherwise: float) -> float:
@@ -150,10 +174,21 @@ def _first_speed(log: Log, otherwise: float) -> float:
     return math.copysign(speed, otherwise)
 
 
-def seen_by_tracker(path: np.ndarray, time_s: np.ndarray, wanted_s: np.ndarray, point: tuple[float, float],
+def first_bend(log: Log) -> float | None:
+    """Turn for each metre of the first poses: the wheels of a log that begins on the way are somewhere."""
+    if log.pose is None or not log.has_heading:
+        return None
+    end = min(max(int(np.searchsorted(log.time_s, START_S)), 1), len(log.time_s) - 1)
+    moved = log.pose[end] - log.pose[0]
+    way = float(np.hypot(moved[0], moved[1]))
+    return float(moved[2]) / way if way > LEAST_WAY_M else None
+
+
+def seen_by_tracker(path: np.ndarray, time_s: np.ndarray, log: Log, point: tuple[float, float],
                     own: OfLog) -> np.ndarray:
-    """Poses of the tracker as a log has them at `wanted_s`, of the body's path at `time_s`; from no certain place."""
-    x, y, heading = late(path, time_s, wanted_s, own.clock_lag_s).T
+    """Poses of the tracker as a log has them, of the body's path at `time_s`; from no certain place. Commands have been
+    shifted by the clocks already."""
+    x, y, heading = late(path, time_s, log.time_s, 0.0 if by_commands(log) else own.clock_lag_s).T
     cos, sin = np.cos(heading), np.sin(heading)
     ahead, left = point[0] + own.tracker_x_m, point[1] + own.tracker_y_m
     return np.column_stack([x + cos * ahead - sin * left, y + sin * ahead + cos * left,
