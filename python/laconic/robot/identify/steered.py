@@ -21,8 +21,8 @@ OFFSET_SD_RAD, HEADING_SD_RAD = 0.2, 0.2
 TRACKER_SD_M = 0.5
 LAG_SD_S, CLOCK_SD_S = 0.1, 0.1
 USUAL_RATE_RAD_PER_S, USUAL_REACH_RAD = 5.0, 0.5
-CREEP, CREEP_SD = 0.1, 0.1
-SCRUB, SCRUB_SD_M, FADE_M = 0.01, 0.01, 0.1
+CREEP_SD = 0.1
+SCRUB_SD_M, FADE_M = 0.01, 0.1
 LEAST_SHARE = 0.05
 USUAL = ("radius", "wheelbase", "steering-gain", "steering-offset")
 
@@ -107,7 +107,7 @@ def _wheelbase(scene: Scene, relative_sd: float) -> list[Parameter]:
             vehicle["body"][i]["hinge_x_m"] = scene.vehicle["body"][i]["hinge_x_m"] + value - nominal
 
     low, high = sorted((LEAST_SHARE * nominal, math.copysign(math.inf, nominal)))
-    return [Parameter("wheelbase", "vehicle.wheelbase", "wheelbase", "m", nominal, relative_sd * abs(nominal), write,
+    return [Parameter("wheelbase", "vehicle.*.wheelbase", "wheelbase", "m", nominal, relative_sd * abs(nominal), write,
                       low=low, high=high)]
 
 
@@ -125,7 +125,7 @@ def _track(scene: Scene, relative_sd: float) -> list[Parameter]:
         for i in steered_bodies(scene):
             vehicle["body"][i]["hinge_y_m"] = middle + share * (scene.vehicle["body"][i]["hinge_y_m"] - middle)
 
-    return [Parameter("track", "vehicle.track", "track", "m", nominal, relative_sd * nominal, write,
+    return [Parameter("track", "vehicle.*.track", "track", "m", nominal, relative_sd * nominal, write,
                       low=LEAST_SHARE * nominal)]
 
 
@@ -152,7 +152,7 @@ def wheels_steered(scene: Scene) -> list[int]:
     return [i for i, wheel in enumerate(scene.vehicle["wheel"]) if wheel.get("body", CARRIAGE) != CARRIAGE]
 
 
-def _of_wheels(scene: Scene, key: str, what: str, group: str, unit: str, nominal: float, sd: float) -> list[Parameter]:
+def _of_wheels(scene: Scene, key: str, what: str, group: str, unit: str, sd: float) -> list[Parameter]:
     """One value of the wheels behind hinges, one of those on the carriage."""
     def write(indices: list[int], vehicle: Vehicle, value: float) -> None:
         for index in indices:
@@ -161,7 +161,7 @@ def _of_wheels(scene: Scene, key: str, what: str, group: str, unit: str, nominal
     behind = wheels_steered(scene)
     others = [i for i in range(len(scene.vehicle["wheel"])) if i not in behind]
     return [Parameter(f"{what} of {which}", f"vehicle.wheel[{where}].{key}", group, unit,
-                      float(scene.vehicle["wheel"][indices[0]].get(key, nominal)), sd, partial(write, indices), low=0.0)
+                      float(scene.vehicle["wheel"][indices[0]].get(key, 0.0)), sd, partial(write, indices), low=0.0)
             for which, where, indices in (("the steered wheels", "steered", behind), ("the other wheels", "fixed", others))
             if indices]
 
@@ -190,8 +190,8 @@ MAKERS: dict[str, Maker] = {
                                        TRACKER_SD_M) for axis in "xy"],
     "heading": _one("tracker_heading_rad", "heading of the tracker", "heading", "rad", 0.0, HEADING_SD_RAD),
     "clock-lag": _one("clock_lag_s", "lag of the tracker", "clock-lag", "s", 0.0, CLOCK_SD_S),
-    "creep": lambda scene, _: _of_wheels(scene, "creep", "creep", "creep", "", CREEP, CREEP_SD),
-    "scrub": lambda scene, _: _of_wheels(scene, "scrub_radius_m", "scrub", "scrub", "m", SCRUB, SCRUB_SD_M),
+    "creep": lambda scene, _: _of_wheels(scene, "creep", "creep", "creep", "", CREEP_SD),
+    "scrub": lambda scene, _: _of_wheels(scene, "scrub_radius_m", "scrub", "scrub", "m", SCRUB_SD_M),
     "scrub-fade": _fade}
 SLIPPING = ("creep", "scrub", "scrub-fade", "friction")
 """What acts on ground with friction alone."""

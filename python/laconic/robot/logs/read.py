@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -181,7 +182,12 @@ class _Reader:
     def single(self, quantity: Quantity | None) -> Sampled | None:
         """Of a gyro, or a commanded speed."""
         found = None if quantity is None else self._raw(quantity)
-        return None if quantity is None or found is None else self._usable(quantity, poses.scaled(quantity, found[0]))
+        if quantity is None or found is None:
+            return None
+        if quantity.name == COMMANDED:  # what stands stays: the offset is in the direction of the command
+            plain = poses.scaled(replace(quantity, offsets=(0.0,)), found[0])
+            return self._usable(quantity, plain + np.sign(plain) * quantity.offsets[0])
+        return self._usable(quantity, poses.scaled(quantity, found[0]))
 
     def pose(self, quantity: Quantity | None) -> Sampled | None:
         """The true pose in the world, or its positions alone."""
