@@ -23,14 +23,14 @@ LEFT_OUT = ("session", "run")
 @click.option("--map-out", type=OutputFile(".toml", stdout=False), metavar="FITTED_MAP.toml",
               help="Write the map with what was found of it: steering, lags, place of the tracker. Needs --map.")
 @click.option("--free", metavar="NAMES",
-              help="Parameters that may change [default: radius,distance; with steered wheels radius,wheelbase,steering-gain,"
-              "steering-offset]. Geometry: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, "
-              "place and heading (of the robot against the recorded pose), clock-lag (of the pose), axle, roller "
-              "(angles of each wheel), common-radius (one of all wheels). Steered: wheelbase, track, trail, "
-              "steering-gain, steering-offset, steering-curve, steering-lag, steering-rate, speed-gain, speed-offset, "
-              "speed-lag, place, heading and clock-lag (of the tracker). On ground with friction: drag (of rollers), "
-              "friction, creep, scrub, scrub-fade, axle-friction, wheel-friction (of each, as a share), viscous (of "
-              "motors), controller (of the wheels' speeds). From voltages or currents: mass, yaw-inertia, "
+              help="Parameters that may change [default: radius,distance; with steered wheels radius,wheelbase,"
+              "steering-gain,steering-offset]. Geometry: radius (of each wheel), distance (of all wheels, one factor), "
+              "centre-of-mass, place and heading (of the robot against the recorded pose), clock-lag (of the pose), "
+              "axle, roller (angles of each wheel), common-radius (one of all wheels). Steered: wheelbase, track, "
+              "trail, steering-gain, steering-offset, steering-curve, steering-lag, steering-rate, speed-gain, "
+              "speed-offset, speed-lag; place and heading are the tracker's. On ground with friction: drag (of "
+              "rollers), friction, creep, scrub, scrub-fade, axle-friction, wheel-friction (of each, as a share), "
+              "viscous (of motors), controller (of the wheels' speeds). From voltages or currents: mass, yaw-inertia, "
               "wheel-inertia, motor-gain, motor-damping, resistance, torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")

@@ -1,4 +1,4 @@
-"""What a fit changed of a log's map, as a map: gain, offset, curve and lags of commands, place and lag of the tracker."""
+"""What a fit changed of a log's map, as a map: how commands are followed, place and lag of the tracker."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def fitted_map_text(study: Study, map_path: Path) -> str:
                 place = CURVE
             _note(comments, place, interval_text(parameter, float(value), float(half)))
     return "\n".join([f"# {map_path.name}, with what `laconic identify` found for {study.scene.path.name}.",
-                      "# Intervals hold the true value with 95 %, if the rest of the model is right; they are of what is",
-                      "# added to the map before it.", *lines_of(data, comments)]) + "\n"
+                      "# Intervals hold the true value with 95 %, if the rest of the model is right; they are of what",
+                      "# is added to the map before it.", *lines_of(data, comments)]) + "\n"
 
 
 def _note(comments: Comments, place: tuple[str, ...], text: str) -> None:
@@ -50,12 +50,11 @@ def _note(comments: Comments, place: tuple[str, ...], text: str) -> None:
 
 def _scaled(table: dict[str, Any], gain: float, offset: float) -> None:
     """scale · gain, and offset · gain + offset; of each column where the map has several."""
-    for key, change in (("scale", lambda x: gain * x), ("offset", lambda x: gain * x + offset)):
-        usual = 1.0 if key == "scale" else 0.0
+    for key, usual, more in (("scale", 1.0, 0.0), ("offset", 0.0, offset)):
         if f"{key}s" in table:
-            table[f"{key}s"] = [change(each) for each in table[f"{key}s"]]
-        elif change(table.get(key, usual)) != table.get(key, usual):
-            table[key] = change(table.get(key, usual))
+            table[f"{key}s"] = [gain * each + more for each in table[f"{key}s"]]
+        elif key in table or gain * usual + more != usual:
+            table[key] = gain * table.get(key, usual) + more
 
 
 def _steering(table: dict[str, Any], own: OfLog) -> None:

@@ -36,7 +36,8 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
     """Keys that are no wheel's: of [vehicle], [vehicle.motor], [ground] and [speed_controller]."""
     after = fitted_scene(study.scene, study.found).vehicle
     tables = {("vehicle",): data["vehicle"], ("vehicle", "motor"): data["vehicle"].get("motor", {})}
-    if any(p.path.startswith("ground.") or p.group in OF_TREES for p in study.found.parameters.each):
+    if any(p.path.startswith("ground.") or p.group in OF_TREES
+           for p in (study.found.asked or study.found.parameters).each):
         data["vehicle"].pop("friction_coefficient", None)  # ground.friction_coefficient says it
         tables["ground",] = data.setdefault("ground", {})
         tables["ground",].update({key: after["ground"][key] for key in after["ground"] if not key.startswith("slope_")})

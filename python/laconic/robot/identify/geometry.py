@@ -31,7 +31,7 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
         if {"steering-curve", "steering-gain"} <= set(free):
             raise BadInput("--free steering-curve: says what steering-gain says, and more; take one of them")
     found: list[Parameter] = []
-    for name in makers:
+    for name in dict.fromkeys([*(group for group in GROUPS if group in makers), *makers]):
         if name in free:
             made = makers[name](scene, relative_sd)
             if not made:
@@ -39,7 +39,8 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
             found += made
     if unknown := [name for name in free if name not in makers]:
         if scene.has_hinges and unknown[0] in GROUPS:
-            raise BadInput(f"--free {unknown[0]}: is not found for vehicles with hinges; take some of {', '.join(makers)}")
+            raise BadInput(f"--free {unknown[0]}: is not found for vehicles with hinges; take some of "
+                           f"{', '.join(makers)}")
         if unknown[0] in steered.MAKERS:
             raise BadInput(f"--free {unknown[0]}: is of vehicles with hinges, and {scene.path} has none; leave it out")
         raise BadInput(f"--free: there is no {shown(unknown[0])}; {nearest_of(unknown[0], tuple(makers))}")

@@ -93,7 +93,7 @@ def run_of(log: Log) -> Run:
     last = len(seen) - 1
     taken = seen[np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])]
     cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
-    rotation = log.rotation_rad() if log.speed_m_per_s is None else np.zeros((len(pose) - 1, 0))  # of commands, no wheel's
+    rotation = log.rotation_rad() if log.speed_m_per_s is None else np.zeros((len(pose) - 1, 0))  # commands have none
     return Run(rotation, pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
                log.has_heading, log.time_s)
 

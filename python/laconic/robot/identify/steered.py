@@ -1,4 +1,4 @@
-"""The parameters of steered vehicles: how the wheels follow the log's steering, where they are, where the tracker is."""
+"""The parameters of steered vehicles: how wheels follow the log's steering, where they are, where the tracker is."""
 
 from __future__ import annotations
 
@@ -162,7 +162,8 @@ def _of_wheels(scene: Scene, key: str, what: str, group: str, unit: str, sd: flo
     others = [i for i in range(len(scene.vehicle["wheel"])) if i not in behind]
     return [Parameter(f"{what} of {which}", f"vehicle.wheel[{where}].{key}", group, unit,
                       float(scene.vehicle["wheel"][indices[0]].get(key, 0.0)), sd, partial(write, indices), low=0.0)
-            for which, where, indices in (("the steered wheels", "steered", behind), ("the other wheels", "fixed", others))
+            for which, where, indices in (("the steered wheels", "steered", behind),
+                                          ("the other wheels", "fixed", others))
             if indices]
 
 

@@ -7,7 +7,7 @@ all its stretches are in it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from laconic.robot.logs import Log
 from laconic.robot.replay.measures import path_length
 from laconic.robot.replay.rolling import path_of
 from laconic.robot.replay.steered_rolling import SteeredRolling
-from laconic.robot.replay.steered_signals import Driven, of_log, seen_by_tracker
+from laconic.robot.replay.steered_signals import Fitted, of_log, seen_by_tracker
 from laconic.robot.replay.steered_slip import SteeredSlip
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -105,20 +105,23 @@ def _cuts(log: Log) -> np.ndarray:
 
 
 def made_up(scene: Scene, vehicle: Vehicle, like: Log, time_s: np.ndarray, steering_rad: np.ndarray,
-            speed_m_per_s: np.ndarray, measured: Sequence[int] = ()) -> Log:
+            speed_m_per_s: np.ndarray, measured: Sequence[int] = (),
+            slid: Callable[[np.ndarray], np.ndarray] = lambda moved: moved) -> Log:
     """A run of a vehicle that rolls without slip: the log's columns are given, its wheels and poses follow.
 
     `steering_rad`: as the log has it; `speed_m_per_s`: of the middle of the fixed axle; `measured`: the wheels whose
-    turning the log has instead of that speed.
+    turning the log has instead of that speed; `slid`: what becomes of the motion that the wheels roll.
     """
     steering = np.broadcast_to(steering_rad[:, None], (len(time_s), _width(like)))
     log = replace(like, path=Path("motion"), time_s=time_s, steering_angle_rad=steering.copy(), pose_rows=None,
                   speed_m_per_s=speed_m_per_s, wheel_angle_rad=None, wheel_speed_rad_per_s=None, pose=None, moved=None,
                   current_A=None, voltage_V=None, set_speed_rad_per_s=None, counter=None, remarks=(), part="")
-    rolling = SteeredRolling(replace(scene, vehicle=vehicle))
+    own = of_log(vehicle)
+    at_once = Fitted(vehicle, replace(own, clock_lag_s=0.0) if len(measured) else own)  # encoders are of one clock
+    rolling = SteeredRolling(replace(scene, vehicle=at_once))
     run = rolling.driven(log)
     moved = rolling.moved(log, run)
-    path = path_of(moved, np.zeros(3))
+    path = path_of(slid(moved), np.zeros(3))
     if len(measured):
         angles = rolling.rotations(log, run, moved)
         at = np.searchsorted(run.time_s, time_s - 1e-9)
@@ -126,7 +129,7 @@ def made_up(scene: Scene, vehicle: Vehicle, like: Log, time_s: np.ndarray, steer
         summed[:, [i for i in range(angles.shape[1]) if i not in measured]] = np.nan
         log = replace(log, wheel_angle_rad=summed, speed_m_per_s=None)
     place = (0.0, 0.0) if isinstance(like.pose_point, str) else like.pose_point
-    return replace(log, pose=seen_by_tracker(path, run.time_s, log, place, of_log(vehicle)))
+    return replace(log, pose=seen_by_tracker(path, run.time_s, log, place, own))
 
 
 def _width(log: Log) -> int:
@@ -140,11 +143,12 @@ def motions(scene: Scene, vehicle: Vehicle, runs: Sequence[Log]) -> dict[str, Lo
     reach = float(np.abs(steering).max(initial=0.0)) or 0.3
     speed = max(float(path_length(each.time_s, each.pose) / each.time_s[-1]) for each in runs if each.pose is not None)
     time = PERIOD_S * np.arange(SAMPLES + 1)
-    measured = () if log.wheel_angle_rad is None and log.wheel_speed_rad_per_s is None else tuple(
-        np.flatnonzero(~np.isnan(log.rotation_rad()).any(axis=0)))
+    measured = [] if log.wheel_angle_rad is None and log.wheel_speed_rad_per_s is None else [
+        int(index) for index in np.flatnonzero(~np.isnan(log.rotation_rad()).any(axis=0))]
     weave = reach * np.sin(2.0 * np.pi * time / 4.0)
     kinds: Mapping[str, tuple[Any, float]] = {
-        "straight ahead": (0.0, speed), "a circle to the left": (reach, speed), "a circle to the right": (-reach, speed),
+        "straight ahead": (0.0, speed), "a circle to the left": (reach, speed),
+        "a circle to the right": (-reach, speed),
         "turns to both sides": (weave, speed), "turns to both sides in reverse": (weave, -speed),
         "a circle at twice the speed": (reach, 2.0 * speed)}
     found = {}
@@ -153,6 +157,3 @@ def motions(scene: Scene, vehicle: Vehicle, runs: Sequence[Log]) -> dict[str, Lo
         found[name] = made_up(scene, vehicle, log, time, angle + np.zeros(len(time)), pace * ramp + np.zeros(len(time)),
                               measured)
     return found
-
-
-__all__ = ["Driven", "SteeredEvidence", "made_up", "motions"]

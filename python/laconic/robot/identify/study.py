@@ -77,7 +77,8 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:
     """The scene with the values found."""
-    return replace(scene, vehicle=found.parameters.vehicle(base_of(scene, found.parameters), found.values))
+    base = base_of(scene, found.asked or found.parameters)
+    return replace(scene, vehicle=found.parameters.vehicle(base, found.values))
 
 
 def parts(logs: Sequence[Log], leave_out: str) -> list[list[Log]]:

@@ -1,4 +1,4 @@
-"""What drives a steered vehicle from sample to sample, by its log: hinges, wheels or a commanded speed, and the tracker.
+"""What drives a steered vehicle from sample to sample, by its log: hinges, wheels or a commanded speed; the tracker.
 
 Encoders are taken between their lines as straight; commands are held, and followed with a lag and a limited rate in
 steps of at most STEP_S. `OfLog` is what a fit changes of all this: it belongs to the map, not to the scene.
@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from laconic.robot.logs.log import LEAST_SAMPLES, Log, counted
+from laconic.errors import BadInput
+from laconic.robot.logs.log import Log, counted
 
 STEP_S = 0.02           # at most, between instants of a run by commands
 GAP_S, GAP = 1.0, 5.0   # least length of a gap, and in usual times between lines
@@ -215,24 +216,31 @@ def begun_at(path: np.ndarray, start: np.ndarray) -> np.ndarray:
 
 
 def parts_of(log: Log) -> list[Log]:
-    """The parts of a log between its gaps, each a run of its own: nothing is integrated over a gap. A remark says so.
-
-    One with positions alone, and one of a part already, stays whole where it has no gap.
-    """
+    """The parts of a log between its gaps, each a run of its own: nothing is integrated over gaps. A remark says so."""
     steps = np.diff(log.time_s)
     ends = np.flatnonzero(steps > max(GAP_S, GAP * float(np.median(steps)))) + 1
     if not len(ends) or log.part:
         return [log]
     edges = [0, *ends.tolist(), len(log.time_s)]
-    pieces = [(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True) if high - low >= LEAST_ROWS]
+    pieces = [(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True)
+              if high - low >= LEAST_ROWS and _moves(log, low, high)]
+    if not pieces:
+        raise BadInput(f"{log.path}: has no part of {LEAST_ROWS} lines in which the robot moves between its "
+                       f"{counted(len(ends), 'gap')}; record lines at least every {GAP_S:g} s")
     lost = len(log.time_s) - sum(high - low for low, high in pieces)
-    remark = (f"{counted(len(ends), 'gap')} in it, the longest {steps.max():.3g} s from {log.time_s[steps.argmax()]:.3f} s "
-              f"on: nothing is integrated over them; {counted(len(pieces), 'part')} of at least {LEAST_ROWS} lines count"
+    remark = (f"{counted(len(ends), 'gap')} in it, the longest {steps.max():.3g} s from "
+              f"{log.time_s[steps.argmax()]:.3f} s on: nothing is integrated over gaps; "
+              f"{counted(len(pieces), 'part')} of at least {LEAST_ROWS} lines with motion counts separately"
               + (f", {counted(lost, 'line')} between gaps are left out" if lost else ""))
     found = [_sliced(log, low, high, f"part {number}") for number, (low, high) in enumerate(pieces, 1)]
     if found:
         found[0] = replace(found[0], remarks=(*found[0].remarks, remark))
     return found
+
+
+def _moves(log: Log, low: int, high: int) -> bool:
+    """Whether there is a way to compare; without a true pose there is none to compare with anyway."""
+    return log.pose is None or bool(np.ptp(log.pose[low:high, :2], axis=0).max() > LEAST_WAY_M)
 
 
 def _sliced(log: Log, low: int, high: int, name: str) -> Log:
@@ -243,6 +251,3 @@ def _sliced(log: Log, low: int, high: int, name: str) -> Log:
     rows = None if log.pose_rows is None else seen[(seen >= low) & (seen < high)] - low
     return replace(log, time_s=log.time_s[low:high] - log.time_s[low], pose_rows=rows, counter=None, part=name,
                    remarks=log.remarks if name == "part 1" else (), **changed)
-
-
-assert LEAST_ROWS < LEAST_SAMPLES

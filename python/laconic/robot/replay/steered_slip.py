@@ -1,5 +1,5 @@
-"""A steered vehicle on ground with friction, by its log: the core moves, hinges at the recorded angles and driven wheels
-at the recorded speeds.
+"""A steered vehicle on ground with friction, by its log: the core moves, with hinges at the recorded angles and driven
+wheels at the recorded speeds.
 
 Hinges whose angles the log says are prescribed ones. Driven wheels have so large an inertia that the contacts cannot
 change their speed, which is written anew for each step, as for vehicles without hinges. Of a commanded speed the
@@ -27,7 +27,7 @@ from laconic.scene import Scene
 STEP_S = 0.01
 DIVIDED = (1, 2, 5, 20)    # of the step, where the core finds no contact forces
 HOLDING = 3e3              # inertia of a held wheel, in M R²
-LIGHT = 1e-3               # mass of what turns with a wheel, of the carriage's, where the scene has none: none is refused
+LIGHT = 1e-3               # of the carriage's mass, for what turns with a wheel: without any, the core refuses it
 TURN = 2.0**64
 
 
@@ -116,7 +116,8 @@ class SteeredSlip(SteeredRolling):
                 rolls = 1j * complex(math.cos(wheel["axle_rad"]), math.sin(wheel["axle_rad"])) * self._radii[index]
                 off = complex(wheel["x_m"], wheel["y_m"]) - middle
                 size = abs(rolls) ** 2
-                found.append((index, (rolls.conjugate() * ahead).real / size, (rolls.conjugate() * 1j * off).real / size))
+                found.append((index, (rolls.conjugate() * ahead).real / size,
+                              (rolls.conjugate() * 1j * off).real / size))
         return found
 
 
