@@ -153,7 +153,8 @@ def _least(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: 
         return np.concatenate([stacked(z, factors) / scale, z])
 
     def jacobian(z: np.ndarray) -> np.ndarray:
-        each = jacobians_of(base, parameters, evidence, z)
+        each = _ahead(base, parameters, evidence, z) if getattr(evidence, "counts_stretches", False) else jacobians_of(
+            base, parameters, evidence, z)
         return np.vstack([*(j * f / scale for j, f in zip(each, factors, strict=True)), np.eye(len(z))])
 
     solved = least_squares(residual, z, ftol=1e-6, xtol=1e-5) if not evidence.difference else least_squares(
@@ -217,6 +218,16 @@ def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidenc
     """Of each run's residual in z."""
     found = differences(base, parameters, evidence.residuals, z, evidence.difference or STEP)
     return found if len(parameters) else [np.zeros((1, 0))] * len(evidence.sessions)
+
+
+def _ahead(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> list[np.ndarray]:
+    """The same by differences to one side, at half the cost: on the way to a solution that is enough."""
+    here = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
+    columns = []
+    for step in evidence.difference * np.eye(len(parameters)):
+        there = evidence.residuals(parameters.vehicle(base, parameters.values(z + step)))
+        columns.append([(a - b) / evidence.difference for a, b in zip(there, here, strict=True)])
+    return [np.stack(each, axis=-1) for each in zip(*columns, strict=True)]
 
 
 def differences(base: dict[str, Any], parameters: Parameters, of: Callable[[Vehicle], list[np.ndarray]],

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares
 
-from laconic.robot.identify.ground import DIFFERENCE
 from laconic.robot.identify.parameter import Parameters, Vehicle
 from laconic.robot.identify.rolling_evidence import RollingEvidence, stretch_errors
 from laconic.robot.logs import Log
@@ -30,6 +29,7 @@ from laconic.scene.ground import slips
 STRETCH_S = 1.0       # long enough that the noise of poses is small in it
 ROBUST = 0.1          # m or rad: an error of a stretch beyond which it counts less in the rough fit
 WEAK_PRIOR = 0.02     # of the rough fit
+SMALL = 2e-3          # of z: the core's contact forces are exact to far less
 USUAL = 1.4826        # standard deviation over the median of sizes
 LEAST_SIZE = 1e-6
 SAMPLES, PERIOD_S = 400, 0.05
@@ -45,7 +45,7 @@ class SteeredEvidence(RollingEvidence):
         super().__init__(scene.core(), scene.path, logs)
         self.runs = [replace(run, cuts=_cuts(log)) for run, log in zip(self.runs, logs, strict=True)]
         self.sessions = [f"{log.path} {log.part}" for log in logs]
-        self.difference = DIFFERENCE if slips(base) else 0.0
+        self.difference = SMALL if slips(base) else 0.0
         self.directions = 3 * sum(len(run.cuts) - 1 for run in self.runs) / len(self.runs)
         self.sizes = np.ones(3) if sizes is None else sizes
         self._scene, self._logs = scene, list(logs)
