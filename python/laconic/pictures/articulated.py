@@ -126,9 +126,24 @@ def plot_slipping(axes: Axes, panel: str, run: Trajectory) -> None:
         name, unit, title = SLIPPING[panel]
         columns = run.columns_of(name)
         labels = [f"wheel {i}" for i in range(1, columns.shape[1] + 1)]
+    _over_time(axes, run, columns, labels, (unit, title))
+
+
+def plot_hinges(axes: Axes, run: Trajectory) -> None:
+    """The angle of every hinge over time."""
+    _over_time(axes, run, run.columns_of("hinge_angle_rad"), [hinge.name for hinge in run.scene.hinges],
+               ("hinge angle [rad]", "Hinge angles"), "hinge")
+
+
+def _over_time(axes: Axes, run: Trajectory, columns: np.ndarray, labels: list[str], words: tuple[str, str],
+               rows: str = "") -> None:
+    """Curves with a unit and a title; `rows`: what the rows are of where there are too many for curves."""
+    unit, title = words
     axes.set_xlabel("time [s]")
     if columns.shape[1] > MOST_CURVES:
         plot_rows(axes, run.time_s, columns, unit)
+        if rows:
+            axes.set_ylabel(rows)
         axes.set_title(title, loc="left")
         return
     handles = plot_curves(axes, run.time_s, columns, labels)
@@ -136,18 +151,3 @@ def plot_slipping(axes: Axes, panel: str, run: Trajectory) -> None:
     axes.margins(x=0.01)
     keep_scale(axes)
     head(axes, title, handles)
-
-
-def plot_hinges(axes: Axes, run: Trajectory) -> None:
-    """The angle of every hinge over time."""
-    angles, names = run.columns_of("hinge_angle_rad"), [hinge.name for hinge in run.scene.hinges]
-    if angles.shape[1] > MOST_CURVES:
-        plot_rows(axes, run.time_s, angles, "hinge angle [rad]")
-        axes.set(xlabel="time [s]", ylabel="hinge")
-        axes.set_title("Hinge angles", loc="left")
-        return
-    handles = plot_curves(axes, run.time_s, angles, names)
-    axes.set(xlabel="time [s]", ylabel="hinge angle [rad]")
-    axes.margins(x=0.01)
-    keep_scale(axes)
-    head(axes, "Hinge angles", handles)

@@ -28,8 +28,10 @@ MOST_BYTES = 16 * 2**20  # of a file: thousands of usual scenes, and a wait that
 NO_HINTS: Mapping[str, str] = {}
 
 
-def read_toml(path: Path, decode: Callable[[bytes], str] | None = None) -> Table:
-    """The file's top table; `decode` makes text of its bytes, UTF-8 if not given."""
+def read_toml(path: Path, decode: Callable[[bytes], str] | None = None,
+              hints: Mapping[str, str] | None = None) -> Table:
+    """The file's top table; `decode` makes text of its bytes, UTF-8 if not given; `hints`: what to do about a key that
+    is given twice."""
     try:
         with path.open("rb") as file:
             given = file.read(MOST_BYTES + 1)
@@ -45,6 +47,10 @@ def read_toml(path: Path, decode: Callable[[bytes], str] | None = None) -> Table
     except BeyondBounds as error:
         raise BadInput(f"{path}: {error}; give the path of another file") from None
     except tomllib.TOMLDecodeError as error:
+        if twice := _twice(text, error):
+            key, first, line = twice
+            remedy = (hints or NO_HINTS).get(key, "keep one of them")
+            raise BadInput(f"{path}: {key}: is given twice, on lines {first} and {line}; {remedy}") from None
         raise BadInput(f"{path}: is no valid TOML: {error}{_line_of(text, error)}; correct that line") from None
     except ValueError:  # of Python, which reads no number of thousands of digits
         raise BadInput(f"{path}: holds a number of thousands of digits; give numbers as people write them") from None
@@ -220,6 +226,32 @@ def _line_of(text: str, error: Exception) -> str:
     if not found or int(found[1]) > len(lines):
         return ""
     return f", {shown(lines[int(found[1]) - 1].strip())}"
+
+
+HEADER = re.compile(r"\s*\[\[?\s*([^\[\]#]+?)\s*\]")
+ENTRY = re.compile(r"\s*([\w\"'.-]+)\s*=")
+
+
+def _twice(text: str, error: Exception) -> tuple[str, int, int] | None:
+    """(key, its first line, the line at which it comes again) of an error of the TOML reader; None for others."""
+    where = re.search(r"at line (\d+)", str(error))
+    if not where or not str(error).startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate")):
+        return None
+    seen, table = dict[str, int](), ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := HEADER.match(line):
+            table = key = header[1]
+        elif entry := ENTRY.match(line):
+            key = f"{table}.{entry[1]}" if table else entry[1]
+        else:
+            continue
+        if number == int(where[1]):
+            parts = key.split(".")
+            above = (".".join(parts[:count]) for count in range(len(parts), 0, -1))
+            found = next((name for name in above if name in seen), None)
+            return None if found is None else (found, seen[found], number)
+        seen.setdefault(key, number)
+    return None
 
 
 def plain(value: Any) -> Any:

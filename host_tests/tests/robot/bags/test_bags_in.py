@@ -310,3 +310,16 @@ def test_what_is_in_a_bag_is_shown_with_a_map_to_begin_with(tmp_path, capsys):
 
 def test_the_scene_of_these_tests_has_the_wheels_of_their_motion():
     assert f"{RADIUS_M}" in SCENE and f"y_m = {HALF_TRACK_M}" in SCENE
+
+
+@pytest.mark.parametrize(("lines", "words"), [
+    ('pose = "/mocap/pose"\n[pose]\nlag_s = 0.1\n',
+     'pose: is given twice, on lines 5 and 6; keep the table, and write the topic there: topic = "/odom"'),
+    ('pose = "/mocap/pose"\npose.lag_s = 0.1\n', 'pose: is given twice, on lines 5 and 6; keep the table'),
+    ('imu = "/imu"\n[yaw_rate]\ncolumn = "/imu.x"\n', "yaw_rate: is given besides imu; keep the table"),
+    ("[wheel_angle]\nsign = 1\n[pose]\n[wheel_angle]\n", "wheel_angle: is given twice, on lines 5 and 8; keep one"),
+    ("[wheel_angle]\nsign = 1\nsign = -1\n", "wheel_angle.sign: is given twice, on lines 6 and 7; keep one")])
+def test_what_a_map_says_twice_is_named_with_its_remedy(lines, words, tmp_path, capsys):
+    messages = Messages()
+    log = rosbag2(tmp_path / "run", drive(messages), messages)
+    assert words in refused(capsys, log, scene_of(tmp_path), "--map", mapped(tmp_path, f"{USUAL}{lines}"))

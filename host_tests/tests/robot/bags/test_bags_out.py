@@ -216,3 +216,11 @@ def test_a_steered_run_comes_back_by_its_steering_angles(tmp_path, capsys):
     assert run(["replay", str(bag), "tricycle_agv", "--map", str(columns), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["runs"][0]
     assert found["path_error"] < 1e-4 and found["heading_error_rad"] < 2e-4
+
+
+@pytest.mark.parametrize("name", ["run.bag", "run.DB3", "run.ulg", "run.mcap.zstd", "run.csv"])
+def test_a_name_of_a_file_that_is_not_written_is_refused_with_those_that_are(name, tmp_path, capsys):
+    assert run(["simulate", "s1", "--bag", str(tmp_path / name)]) == 2
+    error = capsys.readouterr().err
+    assert "is not written; choose NAME.mcap for one file, or a name without an ending" in error
+    assert error.count("\n") == 1 and not (tmp_path / name).exists()

@@ -4,6 +4,7 @@ and no more memory than a whole one takes."""
 from __future__ import annotations
 
 import json
+import math
 import os
 import random
 import resource
@@ -196,3 +197,192 @@ def test_a_chunk_that_claims_to_be_huge_is_refused_before_it_is_unpacked(tmp_pat
     path.write_bytes(bytes(data))
     assert run(["replay", str(path), str(scene_of(tmp_path))]) == 2
     assert f"has a chunk of {1 << 40} bytes" in capsys.readouterr().err
+
+
+def flipped(path: Path, at: int) -> None:
+    """Another bit in one byte."""
+    data = bytearray(path.read_bytes())
+    data[at] ^= 0x10
+    path.write_bytes(bytes(data))
+
+
+def told(capsys: pytest.CaptureFixture[str], path: Path) -> str:
+    """What a replay states beside its numbers."""
+    status = run(["replay", str(path), str(scene_of(path.parent)), "--json"])
+    found = capsys.readouterr()
+    judged(status, *found)
+    return " ".join(json.loads(found.out)["remarks"]) if status == 0 else found.err
+
+
+def mcap(path: Path, *, is_chunked: bool = True) -> Path:
+    """The usual drive as an MCAP without compression, in several chunks."""
+    from mcap.writer import CompressionType, Writer
+
+    messages = Messages()
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=4000, compression=CompressionType.NONE, use_chunking=is_chunked,
+                        enable_data_crcs=True)
+        writer.start("ros2")
+        channels: dict[str, int] = {}
+        for stamp, topic, kind, message in drive(messages):
+            if topic not in channels:
+                text = messages.store.generate_msgdef(kind, ros_version=2)[0]
+                channels[topic] = writer.register_channel(topic, "cdr", writer.register_schema(
+                    kind, "ros2msg", text.encode()))
+            writer.add_message(channels[topic], stamp, bytes(messages.store.serialize_cdr(message, kind)), stamp)
+        writer.finish()
+    return path
+
+
+def test_a_flipped_byte_in_a_chunk_is_found_by_its_checksum(tmp_path, capsys):
+    path = mcap(tmp_path / "run.mcap")
+    assert "checksum" not in told(capsys, path)
+    at = path.read_bytes().index(b"left_wheel", 12_000)
+    flipped(path, at + 40)
+    assert "has a wrong checksum, so a byte in it is not as it was recorded; it is left out" in told(capsys, path)
+    path.write_bytes(path.read_bytes()[:-200])  # without its index
+    assert "of run.mcap has a wrong checksum" in told(capsys, path)
+    assert run(["logs", str(path)]) == 0
+    assert "of run.mcap has a wrong checksum" in capsys.readouterr().out
+
+
+def test_many_chunks_with_wrong_checksums_are_one_line(tmp_path, capsys):
+    path = mcap(tmp_path / "run.mcap")
+    for start in (4_000, 12_000, 20_000):
+        flipped(path, path.read_bytes().index(b"left_wheel", start) + 40)
+    remarks = told(capsys, path)
+    assert remarks.count("wrong checksum") == 1 and "and so are 2 others" in remarks
+
+
+def test_a_flipped_byte_beside_chunks_and_in_the_index_is_found_by_its_checksum(tmp_path, capsys):
+    path = mcap(tmp_path / "plain.mcap", is_chunked=False)
+    flipped(path, path.read_bytes().index(b"left_wheel", 12_000) + 40)
+    assert "plain.mcap has a wrong checksum" in told(capsys, path)
+    path = mcap(tmp_path / "index.mcap")
+    flipped(path, path.read_bytes().rindex(b"/joint_states") + 3)
+    remarks = told(capsys, path)
+    assert "the index at the end of index.mcap is broken" in remarks
+
+
+def test_the_rows_of_a_cut_sqlite_file_that_can_be_read_are_read(tmp_path, capsys):
+    path, _ = whole(tmp_path, "db3")
+    data = path.read_bytes()
+    path.write_bytes(data[:int(0.8 * len(data))])
+    (path.parent / "metadata.yaml").unlink()
+    remarks = told(capsys, path)
+    assert "run.db3 is cut off or broken: " in remarks and "messages of the topics that are used can be read" in remarks
+    assert run(["logs", str(path)]) == 0
+    assert "/joint_states" in capsys.readouterr().out
+
+
+def test_a_broken_page_of_a_sqlite_file_costs_its_own_rows_alone(tmp_path, capsys):
+    path, _ = whole(tmp_path, "db3")
+    data = bytearray(path.read_bytes())
+    page = data.index(b"left_wheel", len(data) // 2) // 4096
+    data[4096 * page:4096 * page + 64] = b"\xff" * 64
+    path.write_bytes(bytes(data))
+    remarks = told(capsys, path)
+    taken, lost = (int(remarks.partition(word)[0].split()[-1]) for word in (" messages of the topics", " between them"))
+    assert taken + lost == 162 and 0 < lost < 60
+
+
+def test_a_recording_without_a_topic_is_one_line(tmp_path, capsys):
+    path = tmp_path / "run.mcap"
+    path.write_bytes(mcap(tmp_path / "whole.mcap").read_bytes()[:30])
+    assert run(["logs", str(path)]) == 2
+    found = capsys.readouterr()
+    assert "holds no topic; run.mcap was not closed or is broken" in found.err and found.err.count("\n") == 1
+    assert not found.out
+
+
+def changed(folder: Path, change: Callable[[Messages, int, str, object], None]) -> Path:
+    """The usual drive with other messages: `change` gets the number of each in its topic."""
+    messages, numbers = Messages(), dict[str, int]()
+    rows = drive(messages)
+    for _, topic, _, message in rows:
+        numbers[topic] = numbers.get(topic, -1) + 1
+        change(messages, numbers[topic], topic, message)
+    return rosbag2(folder / "run", rows, messages)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value", [1e200, 1e20, math.inf, -math.inf])
+@pytest.mark.parametrize("part", ["position", "orientation"])
+def test_an_absurd_pose_is_refused_by_its_message_and_field(part, value, tmp_path, capsys):
+    def change(_, number, topic, message):
+        if topic == "/mocap/pose" and number == 20:
+            setattr(getattr(message.pose, part), "y" if part == "position" else "w", value)
+
+    if part == "orientation" and math.isfinite(value):
+        value = math.inf
+    path = changed(tmp_path, change)
+    assert run(["replay", str(path), str(scene_of(tmp_path))]) in ((2,) if part == "position" else (0, 2))
+    error = capsys.readouterr().err
+    if part == "position":
+        assert "at 0.645161 s" in error and "pose.position.y" in error and error.count("\n") == 1
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("value", "words"), [
+    ("1e200", "line 12: pose 'y' is 1e+200"), ("1e12", "line 12: pose is too large")])
+def test_an_absurd_pose_of_a_table_is_refused_by_its_line_and_column(value, words, tmp_path, capsys):
+    rows = [[f"{0.02 * k:g}", *map(str, wheels_at(0.02 * k)), *map(str, pose_at(0.02 * k))] for k in range(50)]
+    rows[10][4] = value
+    (tmp_path / "run.csv").write_text("\n".join(["t,left,right,x,y,yaw", *map(",".join, rows)]) + "\n")
+    (tmp_path / "map.toml").write_text('[time]\ncolumn = "t"\n[wheel_angle]\ncolumns = ["left", "right"]\n[pose]\n'
+                                       'columns = ["x", "y", "yaw"]\n')
+    assert run(["replay", str(tmp_path / "run.csv"), str(scene_of(tmp_path)), "--map", str(tmp_path / "map.toml")]) == 2
+    error = capsys.readouterr().err
+    assert words in error and "'y'" in error and error.count("\n") == 1
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value", [1e200, math.inf, math.nan])
+def test_a_transform_that_is_no_number_is_refused_or_counted(value, tmp_path, capsys):
+    messages = Messages()
+
+    def truth(stamp, time_s):
+        x, y, heading = pose_at(time_s)
+        return [(stamp, "/tf", "tf2_msgs/msg/TFMessage", messages.transform(
+            stamp, "map", "base_link", value if 0.99 < time_s < 1.01 else x, y, heading))]
+
+    path = rosbag2(tmp_path / "run", drive(messages, truth=truth), messages)
+    (tmp_path / "map.toml").write_text(MAP.partition("stamps")[0] + '[pose]\nframes = ["map", "base_link"]\n')
+    status = run(["replay", str(path), str(scene_of(tmp_path)), "--map", str(tmp_path / "map.toml"), "--json"])
+    found = capsys.readouterr()
+    judged(status, *found)
+    assert status == (0 if math.isnan(value) else 2)
+    if math.isnan(value):
+        assert "1 of 124 messages hold NaN" in found.out and json.loads(found.out)["runs"][0]["path_error"] < 1e-4
+    else:
+        assert "/tf map → base_link x is" in found.err
+
+
+@pytest.mark.parametrize("part", ["position", "orientation"])
+def test_poses_that_are_nan_throughout_are_the_fault_of_their_topic(part, tmp_path, capsys):
+    def change(_, number, topic, message):
+        if topic == "/mocap/pose":
+            for name in "xyzw"[:3 if part == "position" else 4]:
+                setattr(getattr(message.pose, part), name, math.nan if part == "position" else 0.0)
+
+    assert run(["replay", str(changed(tmp_path, change)), str(scene_of(tmp_path))]) == 2
+    error = capsys.readouterr().err
+    assert "/mocap/pose holds no valid pose" in error and "all 124 messages" in error and error.count("\n") == 1
+
+
+def test_joint_states_with_fewer_values_than_names_are_counted(tmp_path, capsys):
+    def change(_, number, topic, message):
+        if topic == "/joint_states" and number in (40, 60, 61):
+            message.position = message.position[:number % 2]
+
+    path = changed(tmp_path, change)
+    assert "/joint_states: 1 of 200 messages have fewer values than names" in told(capsys, path)
+
+
+def test_single_poses_without_a_value_are_counted(tmp_path, capsys):
+    def change(_, number, topic, message):
+        if topic == "/mocap/pose" and number in (40, 60):
+            message.pose.orientation.w = message.pose.orientation.z = 0.0
+
+    assert "/mocap/pose: 2 of 124 messages hold NaN, or a quaternion of length 0" in told(capsys, changed(
+        tmp_path, change))

@@ -136,3 +136,19 @@ def test_other_inputs_of_vehicles_with_hinges_are_refused(more, words, tmp_path,
     assert run(["replay", "run.csv", "robot.toml", "--map", "map.toml", *more]) == 2
     why = capsys.readouterr().err
     assert words in why and why.count("\n") == 1
+
+
+@pytest.mark.parametrize("columns", ['["x", "y", "heading"]\nunits = ["m", "m", "rad"]',
+                                     '["x", "y"]\nunits = ["m", "m"]'])
+def test_wheels_of_hinged_scenes_may_be_counters_that_begin_again(columns, tmp_path, capsys):
+    table = motion()
+    table[:, 1] = np.mod(np.round(TICKS * table[:, 1] / math.tau), TICKS)
+    replayed(tmp_path, motion()[:50], "", capsys)
+    (tmp_path / "map.toml").write_text((tmp_path / "map.toml").read_text().replace(
+        'columns = ["wheel"]', f'columns = ["wheel"]\nunit = "tick"\nticks_per_turn = {TICKS}\nwrap = {TICKS}').replace(
+        '["x", "y", "heading"]\nunits = ["m", "m", "rad"]', columns))
+    lines = ["t,wheel,steering,x,y,heading", *(",".join(f"{value:.12g}" for value in row) for row in table)]
+    (tmp_path / "run.csv").write_text("\n".join(lines) + "\n")
+    assert run(["replay", str(tmp_path / "run.csv"), str(tmp_path / "robot.toml"), "--map", str(tmp_path / "map.toml"),
+                "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-3

@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.base.outputs import claims, make_folder
 from laconic.errors import BadInput, reason_of
-from laconic.pictures.views.robot_view import Area, Placed, RobotView, panels_of
+from laconic.pictures.views.robot_view import Area, Panel, Placed, RobotView, panels_of
 from laconic.scene import Scene
 
 TIMELINE = "time"
@@ -57,6 +57,7 @@ class RerunStream:
     def __init__(self, stream: Any, scene: Scene, rows: int, area: Area | None = None):
         self.scene, self._stream, self._rows = scene, stream, rows
         self._view = RobotView(scene, area)
+        self._parents = {each.name: each.parent for each in self._view.parts}
         self._names: list[str] | None = None
         self._times: list[float] = []
         self._values: list[list[float]] = []
@@ -76,9 +77,9 @@ class RerunStream:
 
     def entity_of(self, part: str) -> str:
         """Where a body or wheel is in the tree of entities: below what carries it."""
-        parents = {each.name: each.parent for each in self._view.parts}
-        above = parents[part]
-        return f"{self.entity_of(above)}/{_escaped(part)}" if above in parents else f"{ROBOT_PATH}/{_escaped(part)}"
+        above = self._parents[part]
+        carrier = self.entity_of(above) if above in self._parents else ROBOT_PATH
+        return f"{carrier}/{_escaped(part)}"
 
     def _begin(self, names: list[str]) -> None:
         """What never changes: shapes, colours of curves, and the blueprint."""
@@ -91,17 +92,18 @@ class RerunStream:
             stream.log(f"{self.entity_of(part.name)}/shape", rerun.Mesh3D(
                 vertex_positions=corners, triangle_indices=np.arange(len(corners)).reshape(-1, 3),
                 vertex_normals=_normals(part.triangles), vertex_colors=np.repeat(part.colours, 3, axis=0)), static=True)
-        for panel in panels_of(self.scene, names):
+        panels = panels_of(self.scene, names)
+        for panel in panels:
             for signal in panel.signals:
                 stream.log(_of_signal(signal), rerun.SeriesLines(names=signal), static=True)
-        stream.send_blueprint(self._blueprint(names))
+        stream.send_blueprint(self._blueprint(panels))
 
-    def _blueprint(self, names: list[str]) -> Any:
+    def _blueprint(self, panels: list[Panel]) -> Any:
         import rerun.blueprint as views
 
         plots = [views.TimeSeriesView(name=panel.title, origin=f"/{SIGNALS_PATH}",
                                       contents=[f"/{_of_signal(signal)}" for signal in panel.signals])
-                 for panel in panels_of(self.scene, names)]
+                 for panel in panels]
         robot = views.Spatial3DView(name=self.scene.name, origin=f"/{WORLD_PATH}", contents="$origin/**",
                                     line_grid=True, eye_controls=self._eye())
         parts = views.Horizontal(robot, views.Vertical(*plots), column_shares=[3, 2]) if plots else robot

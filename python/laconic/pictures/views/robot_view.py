@@ -9,10 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
+from laconic.core.articulated import CARRIAGE
 from laconic.pictures.outlines import DRAWN, hull, outline_points
 from laconic.ros2 import FRAMES
 from laconic.scene import Scene
@@ -92,8 +94,7 @@ class RobotView:
         self.bodies = [FRAMES["base"], *(hinge.name for hinge in scene.hinges)]
         wheels = scene.vehicle["wheel"]
         self._radii = [wheel.get("radius_m", scene.vehicle["wheel_radius_m"]) for wheel in wheels]
-        self._on = [self.bodies[0] if not scene.has_hinges or wheel.get("body", "carriage") == "carriage"
-                    else wheel["body"] for wheel in wheels]
+        self._on = [self.bodies[0] if (on := wheel.get("body", CARRIAGE)) == CARRIAGE else on for wheel in wheels]
         names = [f"wheel_{number}" for number in range(1, len(wheels) + 1)]
         self.wheels = [name if name not in self.bodies else f"{name}_tyre" for name in names]
         self.parts = [*self._solid_bodies(), *self._solid_wheels()]
@@ -108,7 +109,7 @@ class RobotView:
         """From which the whole area is seen."""
         return 2.5 * (self.area.half_m + self.size_m)
 
-    @property
+    @cached_property
     def size_m(self) -> float:
         """About how long the robot is."""
         points = np.concatenate([part.triangles.reshape(-1, 3) for part in self.parts]) if self.parts else np.zeros(1)
@@ -124,11 +125,9 @@ class RobotView:
                 corners += [largest * complex(math.cos(a), math.sin(a)) + centre_of(self.scene.vehicle) * (number == 0)
                             for a in np.arange(8) * math.pi / 4.0]
             rise = 0.08 * number  # bodies above each other, so that none hides in another one
-            found.append(Part(name, WORLD, prism(hull(corners), (BOTTOM + rise) * largest, (TOP + rise) * largest),
-                              np.empty(0)))
-        return [Part(each.name, each.parent, each.triangles,
-                     np.tile(BODIES[number % len(BODIES)], (len(each.triangles), 1)))
-                for number, each in enumerate(found)]
+            solid = prism(hull(corners), (BOTTOM + rise) * largest, (TOP + rise) * largest)
+            found.append(Part(name, WORLD, solid, np.tile(BODIES[number % len(BODIES)], (len(solid), 1))))
+        return found
 
     def _corners_of_wheels(self, body: str) -> list[complex]:
         found = []

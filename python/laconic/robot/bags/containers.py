@@ -6,7 +6,8 @@ import io
 import sqlite3
 import struct
 import tempfile
-from collections.abc import Iterator
+import zlib
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
@@ -28,7 +29,10 @@ from laconic.robot.bags.messages import (
 
 MOST_BYTES_OF_CHUNK = 256 * 2**20   # unpacked: recorders make chunks of about one MB
 MOST_BYTES_OF_MESSAGE = 64 * 2**20  # of a message that was packed by itself
+MOST_GAPS, MOST_DOUBLINGS = 1000, 40  # in a broken file of SQLite: places that are stepped over, and how far
 COPIED_AT_ONCE = 1 << 20
+FOOTER = struct.Struct("<QQI")      # where the summary and its index begin, and its checksum
+SIZE_OF_END = 9 + FOOTER.size + len(MCAP_MAGIC)
 FORMS = {"ros2msg": "msg", "ros1msg": "msg", "ros2idl": "idl"}
 
 
@@ -64,7 +68,11 @@ class SqliteFile:
         try:
             self._base = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
             self._base.text_factory = lambda data: data.decode(errors="replace")
-            self._read_topics()
+            try:
+                self._read_topics()
+            except sqlite3.DatabaseError:
+                self._base.execute("PRAGMA writable_schema=ON")  # takes a file that is shorter than it states
+                self._read_topics()
         except sqlite3.Error:
             raise BadInput(f"{path}: is no rosbag2 that can be read (its tables of topics are broken or missing); "
                            f"{GIVE}") from None
@@ -87,18 +95,62 @@ class SqliteFile:
                 decoder_of, self.path, name, kind, encoding, form, text))
 
     def messages(self, names: set[str]) -> Iterator[tuple[str, int, bytes]]:
-        """In the order in which they were written."""
+        """In the order in which they were written; what is on broken or missing pages is left out and reported."""
         wanted = [key for key, name in self._ids.items() if name in names]
-        marks, taken = ",".join("?" * len(wanted)), 0
-        query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({marks})"  # marks are ? alone
-        try:
-            for key, stamp, data in self._base.execute(query, wanted):
-                if not isinstance(stamp, int) or not isinstance(data, bytes):
-                    continue
-                taken += 1
-                yield self._ids[key], stamp, _unpacked_message(data) if data.startswith(ZSTD_MAGIC) else data
-        except sqlite3.Error:
-            self.remarks.append(f"{self.path.name} is broken after {taken} messages; what follows is left out")
+        self.remarks[:] = self._besides()
+        taken, gaps, after, missing = 0, 0, -1, 0
+        while gaps < MOST_GAPS:
+            try:
+                for number, key, stamp, data in self._rows(wanted, after):
+                    after = number
+                    if not isinstance(stamp, int) or not isinstance(data, bytes):
+                        continue
+                    taken += 1
+                    yield self._ids[key], stamp, _unpacked_message(data) if data.startswith(ZSTD_MAGIC) else data
+                break
+            except sqlite3.Error:
+                gaps += 1
+            following = self._next_whole(wanted, after)
+            if following is None:
+                break
+            missing, after = missing + following - max(after, 0) - 1, following - 1  # numbers begin at 1
+        if gaps:
+            known = f"; {missing} between them are lost" if missing else ""
+            self.remarks.append(f"{self.path.name} is cut off or broken: {taken} messages of the topics that are used "
+                                f"can be read{known}")
+
+    def _rows(self, wanted: list[int], after: int) -> sqlite3.Cursor:
+        marks = ",".join("?" * len(wanted))
+        return self._base.execute(
+            f"SELECT id, topic_id, timestamp, data FROM messages WHERE topic_id IN ({marks}) AND id > ? ORDER BY id",
+            (*wanted, after))  # marks are ? alone
+
+    def _next_whole(self, wanted: list[int], after: int) -> int | None:
+        """The number of a message behind broken pages from which on others can be read; None where there is none."""
+        def found(number: int) -> bool:
+            try:
+                row = self._base.execute("SELECT id, data FROM messages WHERE id >= ? ORDER BY id LIMIT 1",
+                                         (number,)).fetchone()
+            except sqlite3.Error:
+                return False
+            return row is not None
+
+        step = next((1 << power for power in range(MOST_DOUBLINGS) if found(after + 1 + (1 << power))), None)
+        if step is None:
+            return None
+        low, high = after + 1 + step // 2, after + 1 + step  # the one is broken, the other whole
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (low, middle) if found(middle) else (middle, high)
+        return high
+
+    def _besides(self) -> list[str]:
+        """A remark on messages that the recorder had not moved into the file yet."""
+        log = self.path.with_name(f"{self.path.name}-wal")
+        if not log.is_file() or not log.stat().st_size:
+            return []
+        return [f"{log.name} holds messages that are not in {self.path.name} yet and are not read; "
+                f"`sqlite3 {self.path.name} 'PRAGMA wal_checkpoint'` moves them there"]
 
     def close(self) -> None:
         """Closes the file."""
@@ -117,6 +169,8 @@ class McapFile:
         self._channels: dict[int, Any] = {}
         self._counts: dict[int, int] = {}
         self._chunks: list[Any] | None = None
+        self._lasting = list[str]()     # remarks on the file itself, whatever is read of it
+        self._broken: dict[str, list[str]] = {}  # why chunks are left out, and which
         try:
             self._read_summary()
         except BaseException:
@@ -131,7 +185,10 @@ class McapFile:
         summary = None
         with suppress(Exception):  # a file that was cut off has no end to read it from; the library has many errors
             summary = SeekingReader(self._file, record_size_limit=self._size).get_summary()
-        if summary is not None and summary.channels and summary.chunk_indexes:
+        if summary is not None and not self._is_summary_whole():
+            self._lasting.append(f"the index at the end of {self.path.name} is broken (its checksum is wrong), so the "
+                                 "whole file is read without it")
+        elif summary is not None and summary.channels and summary.chunk_indexes:
             self._schemas, self._channels = dict(summary.schemas), dict(summary.channels)
             self._counts = dict(summary.statistics.channel_message_counts) if summary.statistics else {}
             self._chunks = summary.chunk_indexes
@@ -139,6 +196,13 @@ class McapFile:
         self._counts = {}
         for channel, _, _ in self._records(None):
             self._counts[channel] = self._counts.get(channel, 0) + 1
+
+    def _is_summary_whole(self) -> bool:
+        """Whether the summary has the checksum that the footer states; 0: none was written."""
+        self._file.seek(-SIZE_OF_END, io.SEEK_END)
+        start, _, stated = FOOTER.unpack_from(self._file.read(SIZE_OF_END), 9)
+        self._file.seek(start)
+        return not stated or zlib.crc32(self._file.read(self._size - start - len(MCAP_MAGIC) - 4)) == stated
 
     def _name_topics(self) -> None:
         for key, channel in self._channels.items():
@@ -158,7 +222,8 @@ class McapFile:
 
     def _records(self, wanted: set[int] | None) -> Iterator[tuple[int, int, bytes]]:
         """(channel, arrival [ns], bytes); without `wanted` all of them, as their channels are not known yet."""
-        self.remarks.clear()
+        self.remarks[:] = self._lasting
+        self._broken.clear()
         if self._chunks is None or wanted is None:
             yield from self._from_the_beginning(wanted)
             return
@@ -167,46 +232,63 @@ class McapFile:
                 yield from self._of_chunk_at(index.chunk_start_offset, wanted)
 
     def _of_chunk_at(self, offset: int, wanted: set[int]) -> Iterator[tuple[int, int, bytes]]:
-        from mcap.records import Chunk
         from mcap.stream_reader import StreamReader
 
-        try:
+        def chunk() -> Any:
             self._file.seek(offset)
-            chunk = next(iter(StreamReader(self._file, skip_magic=True, emit_chunks=True,
-                                           record_size_limit=self._size).records))
-            assert isinstance(chunk, Chunk)
-            found = list(self._messages_in(chunk, wanted))
+            return next(iter(StreamReader(self._file, skip_magic=True, emit_chunks=True,
+                                          record_size_limit=self._size).records))
+
+        yield from self._of_chunk(f"the chunk at byte {offset}", chunk, wanted)
+
+    def _of_chunk(self, name: str, chunk: Callable[[], Any], wanted: set[int] | None
+                  ) -> list[tuple[int, int, bytes]]:
+        """The messages of one chunk; none, and a remark, where it is broken or its checksum is wrong."""
+        try:
+            return list(self._messages_in(chunk(), wanted))
         except BadInput:
             raise
+        except ChecksumError:
+            why = "has a wrong checksum, so a byte in it is not as it was recorded; it is left out"
         except Exception:  # of the library and the packers beneath: a broken chunk has many
-            self.remarks.append(f"the chunk at byte {offset} of {self.path.name} is broken and is left out")
-            return
-        yield from found
+            why = "is broken and is left out"
+        self._broken.setdefault(why, []).append(name)
+        self.remarks[:] = [*self._lasting, *(
+            f"{names[0]} of {self.path.name} {reason}" + (f", and so are {len(names) - 1} others" * (len(names) > 1))
+            for reason, names in self._broken.items())]
+        return []
 
     def _from_the_beginning(self, wanted: set[int] | None) -> Iterator[tuple[int, int, bytes]]:
         from mcap.records import Channel, Chunk, Footer, Message, Schema
-        from mcap.stream_reader import StreamReader
+        from mcap.stream_reader import CRCValidationError, StreamReader
 
         self._file.seek(0)
-        is_closed, count = False, 0
+        is_closed, count, chunks, before = False, 0, 0, len(self.remarks)
         try:
-            for record in StreamReader(self._file, emit_chunks=True, record_size_limit=self._size).records:
+            for record in StreamReader(self._file, emit_chunks=True, validate_crcs=True,
+                                       record_size_limit=self._size).records:
                 if isinstance(record, Schema):
-                    self._schemas[record.id] = record
+                    self._schemas.setdefault(record.id, record)
                 elif isinstance(record, Channel):
-                    self._channels[record.id] = record
+                    self._channels.setdefault(record.id, record)
                 elif isinstance(record, Message):
                     count += 1
                     if wanted is None or record.channel_id in wanted:
                         yield record.channel_id, record.log_time, record.data
                 elif isinstance(record, Chunk):
-                    for found in self._messages_in(record, wanted):
+                    chunks += 1
+                    for found in self._of_chunk(f"chunk {chunks}", partial(_same, record), wanted):
                         count += 1
                         yield found
                 elif isinstance(record, Footer):
                     is_closed = True
         except BadInput:
             raise
+        except CRCValidationError:  # of the whole file, at its end; a chunk that is broken was named
+            is_closed = True
+            if len(self.remarks) == before:
+                self.remarks.append(f"{self.path.name} has a wrong checksum, so a byte in it is not as it was "
+                                    "recorded; record it anew, or do not trust it")
         except Exception:  # of the library: a file that ends or is broken anywhere
             pass
         if not is_closed:
@@ -218,6 +300,8 @@ class McapFile:
         from mcap.records import Channel, Schema
 
         data = _unpacked_chunk(self.path, chunk)
+        if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+            raise ChecksumError
         at, size = 0, len(data)
         while at + 9 <= size:
             code, length = data[at], int.from_bytes(data[at + 1:at + 9], "little")
@@ -231,14 +315,22 @@ class McapFile:
                 stream = ReadDataStream(io.BytesIO(bytes(body)))
                 if code == 3:
                     schema = Schema.read(stream)
-                    self._schemas[schema.id] = schema
+                    self._schemas.setdefault(schema.id, schema)
                 else:
                     found = Channel.read(stream)
-                    self._channels[found.id] = found
+                    self._channels.setdefault(found.id, found)
 
     def close(self) -> None:
         """Closes the file."""
         self._file.close()
+
+
+class ChecksumError(Exception):
+    """The bytes of a chunk are others than those that were recorded."""
+
+
+def _same(record: Any) -> Any:
+    return record
 
 
 def _unpacked_chunk(path: Path, chunk: Any) -> memoryview:

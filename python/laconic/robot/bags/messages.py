@@ -166,7 +166,10 @@ def _item(index: str) -> Callable[[Any, Any], Any]:
 
     def by_name(value: Any, owner: Any) -> Any:
         names = owner["name"] if isinstance(owner, dict) else owner.name
-        return value[list(names).index(index)]
+        place = list(names).index(index)
+        if not len(value):
+            raise KeyError(index)  # a list that the message leaves empty, as the format allows
+        return value[place]
 
     return by_name
 

@@ -57,8 +57,17 @@ class BagWriter(Protocol):
         ...
 
 
+OF_OTHERS = (".bag", ".db3", ".ulg", ".ulog", ".zstd", ".mf4", ".csv", ".txt", ".json", ".yaml", ".mat", ".rrd", ".blf",
+             ".asc", ".log", ".zip", ".gz", ".h5")
+"""Endings of files: a folder with such a name would be taken for one."""
+
+
 def check_bag(option: str, path: Path) -> None:
-    """BadInput for a folder that holds something already; files are checked as all outputs are."""
+    """BadInput for a name of a file that is not written, and for a folder that holds something already; files are
+    checked as all outputs are."""
+    if path.name.lower().endswith(OF_OTHERS) and not path.is_dir():
+        raise BadInput(f"{option} {path}: {path.suffix} is not written; choose NAME.mcap for one file, or a name "
+                       "without an ending for the folder of a rosbag2")
     if path.suffix.lower() != ".mcap" and path.is_dir() and any(path.iterdir()):
         raise BadInput(f"{option} {path}: is a folder that holds files already; choose a new folder, or a name that "
                        "ends in .mcap")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 from array import array
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field, replace
@@ -70,6 +71,7 @@ def topics_of_ulog(path: Path) -> dict[str, Any]:
 
 TF, TF_STATIC = "/tf", "/tf_static"
 MOST_NS = 1 << 62       # about the year 2116
+MOST = 1e100            # in any unit
 AT_ONCE = 512          # messages between two moves of the progress bar
 
 Frames = tuple[str, str]
@@ -86,6 +88,7 @@ class Samples:
     values: np.ndarray          # samples × columns; NaN: the message has no such field
     has_stamps: bool            # in the headers
     remarks: tuple[str, ...] = ()
+    never: frozenset[int] = frozenset()    # columns whose field no message has
 
     def by_arrival(self) -> Samples:
         """At the instants at which the messages were recorded."""
@@ -104,18 +107,43 @@ class _Columns:
     arrivals: array[int] = field(default_factory=lambda: array("q"))
     values: array[float] = field(default_factory=lambda: array("d"))
     is_stamped: array[int] = field(default_factory=lambda: array("b"))
+    absent: Counter[int] = field(default_factory=Counter)   # messages without each field
+    short: Counter[int] = field(default_factory=Counter)    # messages whose list ends before it
 
     def take(self, arrival: int, message: Any) -> None:
         """A message."""
         stamp = stamp_ns(message)
-        values = [number_of(one, message) for one in self.fields]
         instant = stamp or arrival
         if not -MOST_NS < min(instant, arrival) <= max(instant, arrival) < MOST_NS:
             raise ValueError(instant)
+        values = [self._number(index, one, message) for index, one in enumerate(self.fields)]
         self.is_stamped.append(stamp is not None and (stamp != 0 or arrival == 0))
         self.stamps.append(instant)
         self.arrivals.append(arrival)
         self.values.extend(values)
+
+    def _number(self, index: int, take: Callable[[Any], Any], message: Any) -> float:
+        """A field as a number; of a quaternion its heading; NaN where the message has no such field, which is noted."""
+        try:
+            value = take(message)
+            if isinstance(value, (int, float)):  # of nearly all fields: it shall not be looked at for a quaternion
+                return float(value)
+            return heading_of(value) if _is_quaternion(value) else float(value)
+        except IndexError:
+            self.short[index] += 1
+        except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
+            pass
+        self.absent[index] += 1
+        return math.nan
+
+    def _doubts(self, values: np.ndarray) -> list[str]:
+        """Remarks on messages that have a field, but no value in it."""
+        short = max(self.short.values(), default=0)
+        nan = max((int(np.isnan(column).sum()) - self.absent[index] for index, column in enumerate(values.T)),
+                  default=0)
+        return [f"{self.topic}: {count} of {len(values)} messages {words}" for count, words in (
+            (short, "have fewer values than names or places in the map; what they lack is left out"),
+            (nan, "hold NaN, or a quaternion of length 0; those values are left out")) if 0 < count]
 
     def samples(self) -> Samples:
         """All of them, sorted; of two with one stamp the later one counts."""
@@ -123,7 +151,8 @@ class _Columns:
         values = np.array(self.values, float).reshape(len(stamps), len(self.fields))
         keep = np.array(self.is_stamped, bool)
         has_stamps = bool(keep.any())
-        remarks = []
+        remarks = self._doubts(values)
+        never = frozenset(index for index, count in self.absent.items() if count == len(values))
         if has_stamps and not keep.all():
             remarks.append(f"{self.topic}: {int((~keep).sum())} of {len(keep)} messages have no stamp and are left out")
             stamps, arrivals, values = stamps[keep], arrivals[keep], values[keep]
@@ -135,18 +164,7 @@ class _Columns:
         if not last.all():
             remarks.append(f"{self.topic}: {int((~last).sum())} messages have the stamp of another one and are left "
                            "out")
-        return Samples(self.topic, stamps[last], arrivals[last], values[last], has_stamps, tuple(remarks))
-
-
-def number_of(take: Callable[[Any], Any], message: Any) -> float:
-    """A field as a number; of a quaternion its heading; NaN where the message has no such field."""
-    try:
-        value = take(message)
-        if isinstance(value, (int, float)):  # of nearly all fields: it shall not be looked at for a quaternion
-            return float(value)
-        return heading_of(value) if _is_quaternion(value) else float(value)
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError, OverflowError):
-        return math.nan
+        return Samples(self.topic, stamps[last], arrivals[last], values[last], has_stamps, tuple(remarks), never)
 
 
 def _is_quaternion(value: Any) -> bool:
@@ -190,11 +208,36 @@ class _Frames:
                                "two frames of which one carries the other")
             chain.append((above[at], at))
             at = above[at]
-        return chained([self.edges[edge].samples() for edge in reversed(chain)], parent, child)
+        return chained([_whole(path, self.edges[edge].samples()) for edge in reversed(chain)], parent, child)
 
 
 PARENT, CHILD = field_of("header.frame_id"), field_of("child_frame_id")
+TRANSFORM_NAMES = ("x", "y", "rotation")
 TRANSFORM = tuple(map(field_of, ("transform.translation.x", "transform.translation.y", "transform.rotation")))
+
+
+def _whole(path: Path, samples: Samples) -> Samples:
+    """The transforms that are numbers; BadInput where none is, or where one is too large for any map."""
+    check_sizes(path, samples.topic, samples.values, lambda row: f"its transform {row + 1}", TRANSFORM_NAMES)
+    there = ~np.isnan(samples.values).any(axis=1)
+    if not there.any():
+        raise BadInput(f"{path}: {samples.topic}: none of its {len(there)} transforms is a valid pose (NaN, or a "
+                       "quaternion of length 0); name other frames in the map")
+    return replace(samples, stamp_ns=samples.stamp_ns[there], arrival_ns=samples.arrival_ns[there],
+                   values=samples.values[there])
+
+
+def check_sizes(path: Path, name: str, values: np.ndarray, place: Callable[[int], str],
+                labels: Sequence[str]) -> None:
+    """BadInput for a number that no sensor states, by its row and column: sums of its squares would overflow."""
+    with np.errstate(invalid="ignore"):
+        wrong = np.abs(values) > MOST
+    if wrong.any():
+        row, column = (int(each) for each in np.argwhere(wrong)[0])
+        more = int(wrong.any(axis=1).sum()) - 1
+        raise BadInput(f"{path}: {place(row)}: {name} {labels[min(column, len(labels) - 1)]} is "
+                       f"{values[row, column]:g}, which no sensor states{f', and so are {more} others' if more else ''}"
+                       "; remove these samples, or record the topic anew")
 
 
 def chained(edges: Sequence[Samples], parent: str, child: str) -> Samples:

@@ -57,11 +57,12 @@ class RollingEvidence:
 
     directions: float = 2
     difference = 0.0
+    by_wheels = True
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
         self._core, self._path = core, scene_path
         self.sessions = [str(log.path.resolve().parent) for log in logs]
-        self.runs = [run_of(log) for log in logs]
+        self.runs = [run_of(log, by_wheels=self.by_wheels) for log in logs]
 
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Distances x, y between rolled and true path."""
@@ -83,8 +84,9 @@ class RollingEvidence:
         return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point), lag_s)) for run in self.runs]
 
 
-def run_of(log: Log) -> Run:
-    """BadInput for a log without a true pose, or whose true path has no length."""
+def run_of(log: Log, *, by_wheels: bool = True) -> Run:
+    """BadInput for a log without a true pose, or whose true path has no length. `by_wheels`: their rotations are
+    used."""
     pose = log.needs("pose", "identify")
     seen = log.seen
     length = path_length(log.time_s[seen], pose[seen])
@@ -93,7 +95,7 @@ def run_of(log: Log) -> Run:
     last = len(seen) - 1
     taken = seen[np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])]
     cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
-    rotation = log.rotation_rad() if log.speed_m_per_s is None else np.zeros((len(pose) - 1, 0))  # commands have none
+    rotation = log.rotation_rad() if by_wheels else np.zeros((len(log.time_s) - 1, 0))
     return Run(rotation, pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
                log.has_heading, log.time_s)
 

@@ -39,7 +39,7 @@ class SteeredEvidence(RollingEvidence):
     """Runs of one vehicle, for `solve.fit`: what the motion of each stretch is off by, ahead, to the left, in turn, in
     units of the usual error of each."""
 
-    counts_stretches = True
+    counts_stretches, by_wheels = True, False
 
     def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log], sizes: np.ndarray | None = None):
         super().__init__(scene.core(), scene.path, logs)

@@ -25,7 +25,7 @@ from laconic.robot.bags.samples import (
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.log import LEAST_SAMPLES, PER_WHEEL
 from laconic.robot.logs.quantity import Column, Quantity
-from laconic.robot.logs.sources import Raw, Source, checked_time, numbered
+from laconic.robot.logs.sources import Raw, Source, checked_time, doubt_of_rest, numbered
 from laconic.robot.logs.units import ISO, TIME
 
 HDF5_MAGIC = b"\x89HDF"
@@ -116,13 +116,13 @@ def mat_source(path: Path, columns: ColumnMap) -> Source:
                 raise BadInput(f"{path}: {name} (for {quantity.name}) has {len(vector)} values and its time {len(own)}"
                                f"; give time under [{quantity.name}] in the map, the name of its own instants")
             found[np.searchsorted(instants, own), index] = vector
-        if np.isinf(found).any():
-            raise BadInput(f"{path}: {quantity.name} is not finite in places; remove those samples")
         return found, [repr(str(name)) for name in names]
 
     is_row = np.isin(instants, main) if others else None
+    parts = [_vector(path, vectors, each, "time") for each in of_time.columns]
+    doubts = doubt_of_rest(of_time, parts) if len(parts) == 2 else []
     return Source(path, instants - instants[0], raw, lambda row: f"sample {row + 1}", is_row,
-                  lines=lambda given: f"{len(given)} samples are", tells_gaps=bool(others))
+                  lines=lambda given: f"{len(given)} samples are", tells_gaps=bool(others), remarks=tuple(doubts))
 
 
 def _own_time(path: Path, vectors: Mapping[str, np.ndarray], of_time: Quantity, quantity: Quantity) -> np.ndarray:
@@ -273,15 +273,20 @@ def _by_arrival(topics: Mapping[str, Samples]) -> dict[str, Samples]:
 def _check_fields(path: Path, parts: Sequence[Recording], columns: ColumnMap, places: dict[str, Place],
                   topics: dict[str, Samples]) -> None:
     """BadInput for a field that no message has; joints may be in angles or in speeds."""
-    blank: dict[str, str] = {}
+    blank: dict[str, tuple[str, bool]] = {}
     for name, place in places.items():
         for (topic, index), label in zip(place.columns, place.labels, strict=not place.frames):
             if np.isnan(topics[topic].values[:, index]).all():
-                blank.setdefault(name, label)
-    for name, label in blank.items():
+                blank.setdefault(name, (label, index not in topics[topic].never))
+    for name, (label, is_there) in blank.items():
         if columns.quantities[name].is_optional and any(other in places and other not in blank for other in PER_WHEEL):
             continue
         topic, field = split_column(label)
+        if is_there:
+            valid = "pose" if name == "pose" else "value"
+            raise BadInput(f"{path}: {topic} holds no valid {valid}: {field} is NaN or a quaternion of length 0 in "
+                           f"all {len(topics[topic].values)} messages; name another topic or field in the map, or "
+                           "record it anew")
         joint = field.partition("[")[2].rstrip("]")
         known = all_topics(parts)  # none of a ULog, whose topics have no names of joints
         own = [topic_of(path, known, topic).name] if known else []

@@ -98,6 +98,9 @@ def map_of(table: Table) -> ColumnMap:
     for each in QUANTITIES:
         if each in PER_WHEEL and each in quantities and table.has(each):
             quantities[each] = _of_joints(table.table(each), quantities[each], form)
+        elif each == YAW_RATE and each in quantities and table.has(each):
+            table.fail(each, "is given besides imu; keep the table, and name the field there: "
+                       'column = "/imu.angular_velocity.z"')
         elif table.has(each) and each not in quantities:
             inner = table.table(each)
             found = single_of(inner, each, form) if each in (YAW_RATE, COMMANDED) else quantity_of(

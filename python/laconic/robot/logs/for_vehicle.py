@@ -71,17 +71,25 @@ def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | 
     there, count = wheels_of(log), len(wheels)
     if there == count or (there == 0 and log.speed_m_per_s is not None):
         return log
-    parts = {member: getattr(log, member) for member in MEMBERS.values() if getattr(log, member) is not None}
-    if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in parts.values()):
-        return replace(_with_wraps(log, lambda wraps: wraps[:, :count]),
-                       **{member: value[:, :count] for member, value in parts.items()})
+    if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in _members(log).values()):
+        return _reordered(log, lambda values: values[:, :count])
     driven = [index for index, wheel in enumerate(wheels) if wheel.get("driven", True)]
     places = list(range(there)) if log.is_ordered else driven
     if there != len(places) or not set(driven) <= set(places) <= set(range(count)):
         raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot, or "
                        "driven = false for a wheel that the log has not")
-    at_places: dict[str, Any] = {member: spread(value, places, count) for member, value in parts.items()}
-    return replace(_with_wraps(log, lambda wraps: spread(wraps, places, count)), **at_places)
+    return _reordered(log, lambda values: spread(values, places, count))
+
+
+def _members(log: Log) -> dict[str, np.ndarray]:
+    """The quantities of wheels that the log has."""
+    return {member: value for member in MEMBERS.values() if (value := getattr(log, member)) is not None}
+
+
+def _reordered(log: Log, of_wheels: Callable[[np.ndarray], np.ndarray]) -> Log:
+    """The log with other columns of wheels, and its counter with them."""
+    parts: dict[str, Any] = {member: of_wheels(value) for member, value in _members(log).items()}
+    return replace(_with_wraps(log, of_wheels), **parts)
 
 
 def _with_wraps(log: Log, of_wheels: Callable[[np.ndarray], np.ndarray]) -> Log:
@@ -125,9 +133,7 @@ def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
             *log.remarks, f"the columns {names} are taken for the scene's wheels in this order; name them in a map "
             "if that is wrong"))
     words = ", ".join(f"{name} is wheel {place + 1}" for name, place in zip(log.wheel_names, places, strict=True))
-    parts: dict[str, Any] = {member: spread(value, places, len(wheels)) for member in MEMBERS.values()
-                             if (value := getattr(log, member)) is not None}
     ordered = [log.wheel_names[places.index(index)] if index in places else "" for index in range(len(wheels))]
-    log = _with_wraps(log, lambda wraps: spread(wraps, places, len(wheels)))
+    log = _reordered(log, lambda values: spread(values, places, len(wheels)))
     return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True,
-                   remarks=(*log.remarks, f"by their names {words}"), **parts)
+                   remarks=(*log.remarks, f"by their names {words}"))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot.bags.messages import Recording, Topic, is_bag, parts_of_message
+from laconic.robot.bags.messages import GIVE, Recording, Topic, is_bag, parts_of_message
 from laconic.robot.bags.samples import (
     TF,
     all_topics,
@@ -43,9 +43,13 @@ def guess_bag(path: Path) -> tuple[Guess, dict[str, Topic]]:
     found = Guess({"format": "bag"})
     with recordings(path) as parts:
         topics = topics_in(path, parts)
+        remarks = [remark for part in parts for remark in part.remarks]
+        if not topics:
+            raise BadInput("; ".join([f"{path}: holds no topic", *remarks, GIVE]))
         if is_ulog(path):
             return _of_ulog(found, topics), topics
         _joints(found, parts, topics)
+        found.faults += dict.fromkeys([*remarks, *(remark for part in parts for remark in part.remarks)])
     _pose(found, topics)
     _imu(found, topics)
     if VOLTAGES in topics and found.wheels:
@@ -222,6 +226,8 @@ def _assign(guess: Guess, wheels: Sequence[Mapping[str, Any]]) -> None:
     """The wheels of the scene by their names, written into the map."""
     if not guess.wheels:
         return
+    if len(guess.wheels) == sum(wheel.get("driven", True) for wheel in wheels) == 1:
+        return  # the only driven wheel
     places = places_by_name(guess.wheels, wheels)
     if places is None:
         guess.notes.append(f"the names {', '.join(guess.wheels)} do not say which of the scene's {len(wheels)} wheels "
@@ -238,6 +244,7 @@ def _assign(guess: Guess, wheels: Sequence[Mapping[str, Any]]) -> None:
 
 def _of_bag(path: Path) -> Inspection:
     guess, topics = guess_bag(path)
+    guess.notes += guess.faults
     rows = [(topic.name, topic.type or "–", "–" if topic.count is None else str(topic.count),
              guess.meaning.get(topic.name, "")) for topic in topics.values()]
     return Inspection(path, "a recording of topics", ("topic", "type", "messages", "taken for"), rows, guess)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
+from laconic.robot.bags.samples import check_sizes
 from laconic.robot.logs import poses
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.for_vehicle import spread
@@ -20,9 +21,23 @@ from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
 from laconic.robot.logs.text_table import metadata_number, metadata_of
 from laconic.robot.logs.units import LATITUDE, OF_QUANTITY, OF_WHEEL, TICK, of_tread
-from laconic.robot.logs.wraps import TURNS, continuous, doubt_of, folded, modulus_of, refuse_jumps, said_of
+from laconic.robot.logs.wraps import (
+    TURNS,
+    continuous,
+    doubt_of,
+    folded,
+    hidden_wraps,
+    modulus_of,
+    refuse_jumps,
+    said_of,
+)
 
 HALF_TURN = np.pi
+PARTS = ("x", "y", "heading")     # of a pose
+MOST = {"pose": 1e9, YAW_RATE: 1e6, STEERING: 1e6, "wheel_angle": 1e15, "wheel_speed": 1e6, "set_speed": 1e6,
+        "current": 1e9, "voltage": 1e9, COMMANDED: 1e6}
+"""In SI units: beyond it a number is a fault of the log or of the map, whatever the robot."""
+
 
 def read_log(path: Path, columns: ColumnMap) -> Log:
     """A recorded run; BadInput names the file, line and column that cannot be used."""
@@ -86,6 +101,7 @@ class _Reader:
         if found is None:
             return None
         values, labels = found
+        check_sizes(self.source.path, quantity.name, values, self.source.place, labels)
         for column, label in zip(values.T, labels, strict=True):
             if np.isnan(column).all():
                 if quantity.is_optional:
@@ -104,12 +120,24 @@ class _Reader:
         return values, labels
 
     def _usable(self, quantity: Quantity, values: np.ndarray) -> Sampled:
-        """BadInput where units and scales make a number too large."""
-        if np.isinf(values).any():
-            row = int(np.argmax(np.isinf(values).any(axis=1)))
-            raise BadInput(f"{self.source.path}: {self.source.place(row)}: {quantity.name} is too large in SI units; "
-                           "correct the line, or the units and scales in the map")
+        """BadInput where a number is too large in SI units, by itself or by units and scales."""
+        most = MOST[quantity.name]
+        with np.errstate(invalid="ignore"):
+            wrong = np.abs(values) > most
+        if wrong.any():
+            row, column = (int(each) for each in np.argwhere(wrong)[0])
+            raise BadInput(f"{self.source.path}: {self.source.place(row)}: {quantity.name} is too large in SI units "
+                           f"({self._label(quantity, column, values.shape[1])}{values[row, column]:.3g}, more than "
+                           f"{most:g}); correct the line, or the units and scales in the map")
         return Sampled(quantity.name, values, quantity.is_optional, quantity.kind == COMMAND)
+
+    def _label(self, quantity: Quantity, column: int, width: int) -> str:
+        """Which column one of the values of a quantity is from."""
+        found = self.source.columns(quantity)
+        labels = found[1] if found is not None and not quantity.members else []
+        if quantity.quaternion or not labels or (len(labels) != width and quantity.name != "pose"):
+            labels = list(PARTS[:width]) if quantity.name == "pose" else []
+        return f"{labels[column]}: " if column < len(labels) else ""
 
     def at_wheel(self, quantity: Quantity) -> Sampled | None:
         """A quantity of each wheel."""
@@ -148,7 +176,9 @@ class _Reader:
                 self.remarks += [doubt] if doubt else []
             elif modulus is not None:
                 found[rows, index], doubt = continuous(self.source.path, name, column, modulus, unit, place, said)
-                self.remarks += [doubt] if doubt else []
+                hidden = hidden_wraps(name, column, found[rows, index], self.source.time_s[rows], place,
+                                      (modulus, said))
+                self.remarks += [each for each in (doubt, hidden) if each]
                 if quantity.name == STEERING:  # an absolute encoder above half its range stands on the other side
                     found[rows, index] -= modulus * np.round(found[rows[0], index] / modulus)
             elif quantity.wrap is None:

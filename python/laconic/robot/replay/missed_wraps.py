@@ -29,7 +29,7 @@ CLEARLY = 0.2    # of the range, that wheels must contradict each other by
 def fitting(scene: Scene, logs: Sequence[Log]) -> list[Log]:
     """The logs for the scene's vehicle; a remark names the first row whose counter missed a part of its range."""
     if scene.has_hinges:
-        return [part for log in logs for part in parts_of(for_vehicle(log, scene.vehicle))]
+        return [part for log in logs for part in parts_of(_examined(scene, for_vehicle(log, scene.vehicle)))]
     return [_examined(scene, for_vehicle(log, scene.vehicle)) for log in logs]
 
 
@@ -43,7 +43,8 @@ def _examined(scene: Scene, log: Log) -> Log:
 def _remark(scene: Scene, log: Log) -> str | None:
     assert log.counter is not None and log.wheel_angle_rad is not None
     turned = np.diff(log.wheel_angle_rad, axis=0) / log.counter.wrap_rad
-    for what, expected in _evidence(scene, log):
+    rolling = _rolling(scene)
+    for what, expected in _evidence(scene, log, rolling):
         share = expected / log.counter.wrap_rad
         off = np.where(_gaps(log), share - turned, _middle(share - turned))
         rows = (np.abs(off) > MISSED) & (np.abs(share) > HALF - AGREES)
@@ -52,7 +53,7 @@ def _remark(scene: Scene, log: Log) -> str | None:
             wheel = int(np.argmax(rows[row]))
             return _words(log, row, wheel, float(turned[row, wheel]), f"by {what} by {100.0 * share[row, wheel]:.0f} %",
                           int(rows.any(axis=1).sum()))
-    return _by_other_wheels(scene, log, turned)
+    return _by_other_wheels(rolling, log, turned)
 
 
 def _words(log: Log, row: int, wheel: int, turned: float, instead: str, rows: int) -> str:
@@ -77,15 +78,17 @@ def _middle(rows: np.ndarray) -> np.ndarray:
     return np.asarray(np.median(windows, axis=2))
 
 
-def _evidence(scene: Scene, log: Log) -> list[tuple[str, np.ndarray]]:
-    """What else tells the rotation of each wheel from row to row."""
+def _evidence(scene: Scene, log: Log, rolling: Rolling | None) -> list[tuple[str, np.ndarray]]:
+    """What else tells the rotation of each wheel from row to row; of wheels on hinges a pose alone does not."""
     found = []
     if log.wheel_speed_rad_per_s is not None:
         speed = log.wheel_speed_rad_per_s
         found.append(("its speed", 0.5 * (speed[1:] + speed[:-1]) * np.diff(log.time_s)[:, None]))
-    if log.pose is not None and log.has_heading:
-        found.append(("the pose", rotations_of(scene.core(), scene.vehicle, _moved(scene, log))))
-    elif log.pose is not None and (rolling := _rolling(scene)) is not None:
+    if log.pose is None or scene.has_hinges:
+        return found
+    if log.has_heading:
+        found.append(("the pose", rotations_of(scene.core(), scene.vehicle, _moved(log, rolling))))
+    elif rolling is not None:
         found.append(("the positions", _as_far(log, rolling)))
     return found
 
@@ -98,7 +101,7 @@ def _rolling(scene: Scene) -> Rolling | None:
         return None
 
 
-def _moved(scene: Scene, log: Log) -> np.ndarray:
+def _moved(log: Log, rolling: Rolling | None) -> np.ndarray:
     """Displacements of the body's origin from row to row in its own axes, by the true pose."""
     assert log.pose is not None
     steps = np.diff(log.pose, axis=0)
@@ -108,7 +111,6 @@ def _moved(scene: Scene, log: Log) -> np.ndarray:
     moved = np.column_stack([x / np.sinc(half / np.pi), y / np.sinc(half / np.pi), steps[:, 2]])
     if log.pose_point == POINTS[0]:
         return moved
-    rolling = _rolling(scene) if isinstance(log.pose_point, str) else None
     point = log.pose_point if not isinstance(log.pose_point, str) else rolling.centre_of_mass if rolling else (0.0, 0.0)
     return np.asarray(moved - moved[:, 2:] * np.array([-point[1], point[0], 0.0]))
 
@@ -122,9 +124,8 @@ def _as_far(log: Log, rolling: Rolling) -> np.ndarray:
     return np.where(rolled < 0.9 * way, way / rolling.radii_m, rotations)
 
 
-def _by_other_wheels(scene: Scene, log: Log, turned: np.ndarray) -> str | None:
+def _by_other_wheels(rolling: Rolling | None, log: Log, turned: np.ndarray) -> str | None:
     """Of more wheels than motions: one or two that contradict the others, and with a whole range more agree."""
-    rolling = _rolling(scene)
     assert log.counter is not None
     if rolling is None or np.isnan(turned).any() or rolling.distance_rows.shape[0] <= rolling.distance_rows.shape[1]:
         return None

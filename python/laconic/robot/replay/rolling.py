@@ -7,7 +7,7 @@ ground, R_i s_i. Between two samples the body's velocity is taken as constant an
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,7 +17,7 @@ import numpy as np
 
 from laconic.core import Core
 from laconic.errors import BadInput
-from laconic.robot.logs.log import POINTS, Log
+from laconic.robot.logs.log import POINTS, Log, Point
 from laconic.robot.replay.placing import fitted_to, start_of
 
 
@@ -47,21 +47,27 @@ class Rolling:
         found[:, measured] = self.origin @ np.linalg.pinv(rows) * self.radii_m[measured]
         return found
 
-    def moved(self, rotation_rad: np.ndarray, point: str | tuple[float, float] = POINTS[0]) -> np.ndarray:
+    def moved(self, rotation_rad: np.ndarray, point: Point = POINTS[0]) -> np.ndarray:
         """Displacements of a point from sample to sample in the body's frame, one row each; NaN: not measured."""
         measured = ~np.isnan(rotation_rad).any(axis=0)
         steps: np.ndarray = rotation_rad @ self.per_rotation.T if measured.all() else (
             np.where(measured, rotation_rad, 0.0) @ self.from_wheels(measured).T)
-        if point != POINTS[0]:
-            x, y = self.centre_of_mass if isinstance(point, str) else point
-            steps = steps + steps[:, 2:] * np.array([-y, x, 0.0])
-        return steps
+        return at_point(steps, point, self.centre_of_mass)
 
     def path(self, log: Log, start: np.ndarray | None = None) -> np.ndarray:
         """Predicted poses x, y, heading at the samples' times, from the true first pose (or from `start`); placed to
         fit where the log has positions alone."""
         path = path_of(self.moved(log.rotation_rad(), log.pose_point), start_of(log) if start is None else start)
         return fitted_to(log, path) if start is None else path
+
+
+def at_point(steps: np.ndarray, point: Point, centre_of_mass: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Displacements of a point, from those of the body's origin."""
+    if point == POINTS[0]:
+        return steps
+    x, y = centre_of_mass if isinstance(point, str) else point
+    found: np.ndarray = steps + steps[:, 2:] * np.array([-y, x, 0.0])
+    return found
 
 
 def path_of(moved: np.ndarray, start: np.ndarray) -> np.ndarray:
