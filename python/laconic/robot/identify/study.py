@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from laconic.errors import BadInput
 from laconic.robot.identify.controller import FoundController, controller_of
@@ -134,18 +135,22 @@ def _left_out(scene: Scene, logs: Sequence[Log], parameters: Parameters, found: 
     apart = parts(logs, leave_out)
     if len(apart) < 2:
         raise BadInput(f"--leave-out {leave_out}: there is one {leave_out} only; give logs of several")
-    by_path: dict[tuple[object, str], RunErrors] = {}
+    by_path: dict[tuple[Path, str], RunErrors] = {}
+    names = {_key(log): name for log, name in zip(logs, run_names(logs), strict=True)}
     for part in apart:
-        rest = [log for log in logs if log not in part]
+        left = {_key(log) for log in part}
+        rest = [log for log in logs if _key(log) not in left]
         fitted = fitted_scene(scene, _fit(scene, rest, parameters, found))
         errors = errors_of(fitted, part, parameters)
         if with_controller:
             errors = _with_wheel_speeds(fitted, rest, part, errors)
-        names = run_names(logs)
-        by_path.update({(log.path, log.part): replace(each, run=names[logs.index(log)])
-                        for log, each in zip(part, errors, strict=True)})
+        by_path.update({_key(log): replace(each, run=names[_key(log)]) for log, each in zip(part, errors, strict=True)})
         advance()
-    return [by_path[log.path, log.part] for log in logs]
+    return [by_path[_key(log)] for log in logs]
+
+
+def _key(log: Log) -> tuple[Path, str]:
+    return log.path, log.part
 
 
 def _with_wheel_speeds(fitted: Scene, rest: Sequence[Log], part: Sequence[Log],
