@@ -19,6 +19,7 @@ from laconic.core.articulated import CARRIAGE
 from laconic.core.slipping import SlippingVehicle, hinge_keys
 from laconic.errors import Refused
 from laconic.robot.logs.log import Log
+from laconic.robot.replay.held_wheels import intervals
 from laconic.robot.replay.rolling import path_of
 from laconic.robot.replay.steered_rolling import STEERED, SteeredRolling
 from laconic.robot.replay.steered_signals import Driven
@@ -62,7 +63,10 @@ class SteeredSlip(SteeredRolling):
     def _speeds(self, log: Log, run: Driven, moved: np.ndarray) -> np.ndarray:
         """Of each wheel between two instants; of commands as they roll without slip."""
         rotation = run.rotation_rad if run.way_m is None else self.rotations(log, run, moved)
-        found: np.ndarray = np.nan_to_num(rotation / np.diff(run.time_s)[:, None])
+        rotation = np.nan_to_num(rotation)
+        if run.way_m is None:
+            rotation = _even(run.time_s, rotation)
+        found: np.ndarray = rotation / np.diff(run.time_s)[:, None]
         return found
 
     def _vehicle(self, names: tuple[str, ...], held: list[int]) -> SlippingVehicle:
@@ -119,6 +123,21 @@ class SteeredSlip(SteeredRolling):
                 found.append((index, (rolls.conjugate() * ahead).real / size,
                               (rolls.conjugate() * 1j * off).real / size))
         return found
+
+
+def _even(time_s: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    """Rotations without the jitter of lines and ticks, which would make wheels slip at each of them: their speed is
+    straight between the middles of intervals."""
+    taken = intervals(time_s)
+    if len(taken) < 3:
+        return rotation
+    summed = np.vstack([np.zeros(rotation.shape[1]), np.cumsum(rotation, axis=0)])
+    at, known = time_s[taken], summed[taken]
+    speeds, middles = np.diff(known, axis=0) / np.diff(at)[:, None], 0.5 * (at[1:] + at[:-1])
+    mine = 0.5 * (time_s[1:] + time_s[:-1])
+    found = np.column_stack([np.interp(mine, middles, column) for column in speeds.T]) * np.diff(time_s)[:, None]
+    total = found.sum(axis=0)
+    return found + (summed[-1] - total) * (np.diff(time_s) / (time_s[-1] - time_s[0]))[:, None]
 
 
 def held_table(scene: Scene, names: tuple[str, ...], held: list[int]) -> dict[str, Any]:
