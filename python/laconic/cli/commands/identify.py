@@ -62,7 +62,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     from laconic.robot.identify.fitted_toml import fitted_text
     from laconic.robot.identify.geometry import geometry_of
     from laconic.robot.identify.picture import draw
-    from laconic.robot.identify.study import identify
+    from laconic.robot.identify.study import identify, parts
     from laconic.robot.identify.words_of_errors import failures
     from laconic.robot.logs import gather_logs
     from laconic.robot.logs.column_map import named_map
@@ -77,7 +77,9 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []
-    with progress_bar("identifying", 1 + len(runs)) as advance:
+    left_out = len(parts(runs, leave_out)) if leave_out else 0
+    both = given.has_hinges and any(name in steered.SLIPPING for name in names)  # without slip, too
+    with progress_bar("identifying", 1 + left_out * (1 + both)) as advance:
         study = identify(given, runs, parameters, judge=others, leave_out=leave_out,
                          with_controller="controller" in names, advance=advance)
     if out is not None:
