@@ -9,7 +9,7 @@ from pathlib import Path
 from laconic.errors import BadInput
 from laconic.robot.identify.controller import FoundController, controller_of
 from laconic.robot.identify.evidence import MEASURE, errors_of, evidence_of, kind_of
-from laconic.robot.identify.ground import base_of, need_currents
+from laconic.robot.identify.ground import OF_TREES, base_of, need_currents
 from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, fit, values_by_name
 from laconic.robot.identify.steered import SLIPPING
@@ -103,7 +103,8 @@ def _near(scene: Scene, logs: Sequence[Log], parameters: Parameters, evidence: S
     """Where the fit of a steered vehicle begins; with friction, where rolling without slip has ended."""
     if evidence.difference:
         rolling = rigid_ground(scene), rolls_by(parameters)
-        return values_by_name(_fit(rolling[0], logs, rolling[1]))
+        inside = {p.name: p.nominal + p.prior_sd for p in parameters.each if p.group in OF_TREES and p.nominal <= p.low}
+        return {**inside, **values_by_name(_fit(rolling[0], logs, rolling[1]))}  # a bound is no place to begin
     return evidence.rough(base_of(scene, parameters), parameters)
 
 
