@@ -185,7 +185,7 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
 
     def covariance(rows: np.ndarray) -> np.ndarray:
         # a fit of whole paths does not make its stretches' errors smaller; sums over blocks it does
-        correction = 1.0 if rows is single else len(rows) / max(len(rows) - count, 1)
+        correction = own if rows is single else len(rows) / max(len(rows) - count, 1)
         roots = np.vstack([np.sqrt(correction) / scale**2 * rows, np.eye(count)]) @ inverse.T @ parameters.factor.T
         found: np.ndarray = roots.T @ roots  # never below 0, however nearly two parameters are one
         return found
@@ -196,6 +196,8 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
         return widths
 
     single = np.concatenate(parts)
+    numbers = sum(len(jacobian) for jacobian in jacobians)  # a fit of the stretches themselves makes these smaller
+    own = numbers / max(numbers - count, 1) if getattr(evidence, "counts_stretches", False) else 1.0
     plain = widest = half_widths(single)
     likeness, is_found = likeness_of(_unexplained(base, parameters, evidence, z))
     is_found &= scale > SMALLEST_SCALE  # rounding repeats, too
