@@ -388,7 +388,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("frc.steering", LIST_OF_TEXTS, "Output of each motor that steers, in the order of the wheels", (), "none"),
     Key("frc.steering_encoder", LIST_OF_TEXTS, "`DutyCycleEncoder[0]`, `AnalogEncoder[0]`, `Encoder[0]` …", (), "none"),
     Key("frc.steering_counts", A_NUMBER, "Counts of an `Encoder` in a turn of the module", 4096.0, rule=POSITIVE),
-    Key("frc.gyro", TEXT, "`AnalogGyro[0]`, `ADXRS450[0]`, `CANGyro:NAME` or `SimDevice:NAME/VALUE`", None, "none"),
+    Key("frc.gyro", TEXT, "`ADXRS450[0]`, `AnalogGyro[0]`, `CANGyro:NAME` or `SimDevice:NAME/VALUE`", None, "none"),
     Key("rig.id_base", "whole number", "First CAN identifier of the node", None, "the node's own", range="0 to 0x7FF"),
     Key("rig.frames", "list of texts", "Frames of [the wire](wire.md) that the node sends", (), "the usual ones"),
     Key("rig.drives.protocol", TEXT, "What the drives speak", None, "that of `--drives`", choices=PROTOCOLS),
