@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from laconic import BadInput, Scene, read_scene, simulate
+from laconic.base.paths import SOURCE_DIR
 from laconic.robot.ardupilot.server import Dropped, Frame, Player, Server, play_ardupilot, read_packet
 from laconic.robot.ardupilot.vehicle import Outputs
 from laconic.scene.drives import ArduPilotTable
@@ -293,20 +294,16 @@ def with_table(tmp_path: Path, name: str, table: str) -> Path:
 
 
 def test_a_table_of_channels_replaces_the_usual_ones(tmp_path: Path) -> None:
-    scene = read_scene(with_table(tmp_path, "turtlebot3_burger", """[ardupilot]
-pwm_us = [1100, 1500, 1900]
-[[ardupilot.channel]]
-number = 7
-signals = ["voltage_V[1]", "voltage_V[2]"]
-full = -6.0
+    page = (SOURCE_DIR / "docs/play.md").read_text(encoding="utf-8")
+    table = page.partition("```toml\n[ardupilot]")[2].partition("```")[0]
+    outputs = Outputs(read_scene(with_table(tmp_path, "turtlebot3_burger", f"""[ardupilot]{table}
 [[ardupilot.channel]]
 number = 8
 signals = ["voltage_V[2]"]
 full = 1.0
-"""))
-    outputs = Outputs(scene)
+""")))
     assert outputs.signals == ("voltage_V[1]", "voltage_V[2]")
-    shares, _ = outputs.shares((1500, 1500, 1500, 1500, 1500, 1500, 1100, 1900))
+    shares, _ = outputs.shares((1300, 1500, 1500, 1500, 1500, 1500, 1500, 1900))
     assert outputs.values(shares).tolist() == [6.0, 7.0]
 
 

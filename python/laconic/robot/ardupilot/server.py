@@ -60,9 +60,9 @@ class Frame:
 class Dropped(Exception):
     """A packet that is dropped, with the reason in words that are the same for all of its kind."""
 
-    def __init__(self, kind: str, example: str):
-        super().__init__(example)
-        self.kind = kind
+    def __init__(self, kind: str, text: str = ""):
+        super().__init__(kind, text)
+        self.kind, self.text = kind, text
 
 
 def read_packet(data: bytes) -> Frame:
@@ -220,7 +220,7 @@ class Server:
             data, peer = self.socket.recvfrom(LARGEST_PACKET)
             frame = read_packet(data)
         except Dropped as dropped:
-            self.player.tell(f"dropped, {dropped.kind}", f"{dropped}; it is dropped")
+            self.player.tell(f"dropped, {dropped.kind}", f"{dropped.text}; it is dropped")
             return False
         except OSError:  # an answer that nobody was there to take, on some systems
             return False
