@@ -1,12 +1,12 @@
-/* Stands in for ArduPilot's SITL at the other end of its JSON interface; written from the protocol, to which ArduPilot's
- * libraries/SITL/examples/JSON/readme.md is the guide.
+/* Stands in for ArduPilot's SITL at the other end of its JSON interface; written from the protocol, to which
+ * ArduPilot's libraries/SITL/examples/JSON/readme.md is the guide.
  *
  *     stand_in PORT RATE FRAMES EVERY RESENT < schedule
  *
  * The schedule has lines "frame pulse pulse pulse pulse": pulses of SERVO1 to 4 from that frame on. In lockstep: one
- * packet, then its answer. Each EVERY frames it prints time, north, east, yaw, velocity north and east, yaw rate and the
- * specific force. Each RESENT frames (0: never) it sends the packet again, as if no answer had come, and the answer must
- * be the same. Ends with 1 where an answer is missing or is not as it should be. */
+ * packet, then its answer. Each EVERY frames it prints time, north, east, yaw, velocity north and east, yaw rate and
+ * the specific force. Each RESENT frames (0: never) it sends the packet again, as if no answer had come, and the
+ * answer must be the same. Ends with 1 where an answer is missing or is not as it should be. */
 #include <arpa/inet.h>
 #include <math.h>
 #include <stdint.h>
