@@ -16,7 +16,7 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 GROUPS = {  # the parts of the manual, in the order in which a reader needs them
     "Start": ("tutorial", "how-to"),
     "Guides": ("scenes", "articulated", "import", "sensors", "fmu-importers", "fmu", "rig",
-               "rig-ports", "play", "play-drives", "ros2", "logs", "bags",
+               "rig-ports", "play", "play-drives", "ros2", "frc", "logs", "bags",
                "control", "c", "python", "sweep", "batch", "page"),
     "Reference": ("reference-commands", "reference-scene", "signals", "reference-c", "reference-python",
                   "reference-fmi", "wire", "glossary"),

@@ -1,4 +1,4 @@
-"""FRC robots: generator, drivetrain and bridge; with robotpy also the robots of docs/frc.md, and WPILib's own models."""
+"""FRC robots: generator, drivetrain, bridge; with robotpy also the robots of docs/frc.md, and WPILib's own models."""
 
 from __future__ import annotations
 
@@ -113,7 +113,8 @@ def test_wrong_options_are_refused_by_name(words: str, field: str, tmp_path: Pat
 
 @pytest.mark.parametrize("key, value, words", [
     ("drive", '["PWM[0]"]', "names 1 devices for 4 wheels"), ("gyro", '"PWM[0]"', "not a device for this"),
-    ("gyro", '"ADXRS450"', "is not the name of a device"), ("drive", '["PWM[0]", "PWM[1]", "PWM[2]", "PWM[77]"]', "0 to"),
+    ("gyro", '"ADXRS450"', "is not the name of a device"),
+    ("drive", '["PWM[0]", "PWM[1]", "PWM[2]", "PWM[77]"]', "0 to"),
     ("battery_V", "-1", "frc.battery_V"), ("steering_encoder", '["SimDevice:a", "Encoder[0]", "Encoder[2]", '
                                            '"Encoder[4]"]', "SimDevice:NAME/VALUE")])
 def test_wrong_devices_are_refused_by_key(key: str, value: str, words: str, tmp_path: Path) -> None:
