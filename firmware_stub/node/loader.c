@@ -65,6 +65,18 @@ static const location *find(uint8_t field, uint8_t item) {
     return NULL;
 }
 
+#if LACONIC_NODE_WITH_XCP
+bool laconic_loader_find(laconic_loader_place *place, uint8_t field, uint8_t k) {
+    const location *where = find(field, k);
+    if (where == NULL || where->items > 0) where = find(field, (uint8_t)(k + 1U));
+    if (where == NULL || where->offset >= sizeof(laconic_vehicle)) return false;
+    place->stride = where->items > 0 ? where->stride : 0U;
+    place->offset = (uint16_t)(where->offset + place->stride * k);
+    place->kind = where->kind_and_need & 15U;
+    return true;
+}
+#endif
+
 /* Fields of laconic.dbc that are not in the table: of a motor, which the rig fits, and what this build leaves out. */
 static bool is_left_out(uint8_t field) {
     const bool of_slope = field == LACONIC_FIELD_SLOPE || field == LACONIC_FIELD_SLOPE_HEADING;

@@ -160,6 +160,9 @@ static uint8_t take_loaded(laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
     node->drive_plan = node->loader.parameters.drives;
 #endif
+#if LACONIC_NODE_WITH_XCP
+    laconic_xcp_adopt(node, &node->loader.parameters.vehicle);
+#endif
     node->model_is_wrong = false;
     node->state = LACONIC_WIRE_STATE_READY;
     laconic_node_clear_inputs(node);

@@ -4,6 +4,9 @@
 #if LACONIC_NODE_WITH_SENSORS
 
 bool laconic_node_watches(const laconic_node *node) {
+#if LACONIC_NODE_WITH_XCP
+    if (node->xcp.senses) return true;
+#endif
     return node->has_sensors || (node->send & (LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER)) != 0 ||
            (node->raw_output.send & RAW_OF_SENSORS) != 0;
 }

@@ -13,7 +13,7 @@ from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.base import read_base, read_frc
-from laconic.scene.drives import read_drives
+from laconic.scene.drives import read_ardupilot, read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground, slips
@@ -68,6 +68,8 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
                                     parts["run"]["duration_s"])
     parts["base"] = read_base(top.table("base"), parts["vehicle"]) if top.has("base") else None
     parts["frc"] = read_frc(top.table("frc"), parts["vehicle"]) if top.has("frc") else None
+    parts["ardupilot"] = read_ardupilot(top.table("ardupilot"), wheel_count, list(signal_names(
+        LENGTHS, PER_WHEEL, wheel_count))) if top.has("ardupilot") else None
     parts["hinges"], parts["wheel_places"] = (), ()
     parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
@@ -97,6 +99,8 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
     parts["base"] = read_base(top.table("base"), vehicle) if top.has("base") else None
     parts["frc"] = read_frc(top.table("frc"), vehicle) if top.has("frc") else None
+    parts["ardupilot"] = read_ardupilot(
+        top.table("ardupilot"), len(vehicle["wheel"]), list(known)) if top.has("ardupilot") else None
     parts["sensors"] = NO_SENSORS
     parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges)
     top.done()

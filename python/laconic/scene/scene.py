@@ -20,7 +20,7 @@ from laconic.core.sensors import Sensors
 from laconic.core.slipping import SlippingVehicle
 from laconic.errors import BadInput, Refused
 from laconic.scene.base import BaseTable, FrcTable
-from laconic.scene.drives import Drives
+from laconic.scene.drives import ArduPilotTable, Drives
 from laconic.scene.ground import slips
 from laconic.scene.hinges import Hinge, check_without_hinges, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
@@ -114,6 +114,7 @@ class Scene:
     sensors: SensorTables = NO_SENSORS
     base: BaseTable | None = None
     frc: FrcTable | None = None
+    ardupilot: ArduPilotTable | None = None
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
     hinges: tuple[Hinge, ...] = ()  # of bodies besides the carriage, in the order of vehicle["body"]
     wheel_places: tuple[str, ...] = ()  # with hinges: the table of each wheel in the file
@@ -197,7 +198,7 @@ class Scene:
         """The checked vehicle of a scene with hinges on ideal ground."""
         if self.slips_on_hinges:
             raise BadInput(f"{self.path}: ground.friction_coefficient: this does not take hinges on ground with "
-                           "friction yet; use laconic simulate, or take it out")
+                           "friction yet; use laconic simulate or laconic fmu, or take it out")
         return self._with_room(core, ArticulatedVehicle)
 
     def slipping_vehicle(self, core: Core) -> SlippingVehicle:
@@ -292,8 +293,8 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], base=parts["base"], frc=parts["frc"], in_degrees=parts["in_degrees"],
-        hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
+        sensors=parts["sensors"], base=parts["base"], frc=parts["frc"], ardupilot=parts["ardupilot"],
+        in_degrees=parts["in_degrees"], hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
 
 
 def with_found_step(scene: Scene) -> Scene:

@@ -321,4 +321,4 @@ def test_the_node_its_drives_and_the_gate_do(macros):
     folders = [*FOLDERS, NODE / "include", NODE / "node", NODE / "drives"]
     files = [path for part in ("node", "wire", "secure", "drives") for path in (NODE / part).glob("**/*.c")]
     compiled(macros, [*folders, built("firmware_stub/wire")], sorted(files), "-DLACONIC_NODE_WITH_ESTIMATE=1",
-             "-DLACONIC_NODE_WITH_HINGES=1")
+             "-DLACONIC_NODE_WITH_HINGES=1", "-DLACONIC_NODE_WITH_XCP=1")

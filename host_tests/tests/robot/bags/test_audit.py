@@ -117,3 +117,114 @@ def test_a_recorded_mecanum_base_is_calibrated_by_its_map_alone(tmp_path, capsys
     assert found["nominal"] == pytest.approx(0.0217, abs=5e-4) and found["found"] < 0.003
     heading = next(each for each in found["fit"]["parameters"] if each["name"] == "heading of the robot")
     assert 0.0 < heading["value"] < math.radians(5.0)
+
+
+WHEEL = '[[vehicle.wheel]]\nkind = "fixed"\nx_m = {}\ny_m = {}\naxle_deg = -90.0\n{}\n'
+FRONT = 'steered = "{}"\nname = "{}"\n'
+MOTOR = "mass_kg = 1.0\nyaw_inertia_kgm2 = 0.1\nsteering_gain_Nm_per_V = 1.0\n"
+BASE_M, HALF_M, WHEEL_M = 1.2, 0.3, 0.1
+
+
+def steered_scene(folder: Path, kind: str) -> Path:
+    """A tricycle that its front wheel drives and steers, or a car with two coordinated front wheels."""
+    text = scene_of(folder).read_text().replace("= 0.033", f"= {WHEEL_M}")
+    rear = "".join(WHEEL.format(0.0, side * HALF_M, "driven = false" if kind == "tricycle" else "")
+                   for side in (1.0, -1.0))
+    front = WHEEL.format(BASE_M, 0.0, FRONT.format("motor", "front") + MOTOR) if kind == "tricycle" else "".join(
+        WHEEL.format(BASE_M, side * HALF_M, FRONT.format("coordinated", f"front_{name}") + "driven = false\n")
+        for name, side in (("left", 1.0), ("right", -1.0)))
+    path = folder / f"{kind}.toml"
+    order = front + rear if kind == "tricycle" else rear + front
+    path.write_text(f"{text[:text.index('[[vehicle.wheel]]')]}{order}{text[text.index('[run]'):]}")
+    return path
+
+
+def steered_log(folder: Path, kind: str, *, radius: float = 1.0, base: float = 1.0, gain: float = 1.0,
+                offset: float = 0.0, ahead_m: float = 0.0, lag_s: float = 0.0) -> tuple[Path, Path]:
+    """A run of a vehicle whose numbers are off by these factors, and its map."""
+    time = 0.002 * np.arange(30_001)
+    told = 0.5 * np.sin(0.5 * time) + 0.25 * np.sin(0.23 * time) + 0.1
+    angle = gain * told + offset
+    middle = 0.5 * (angle[1:] + angle[:-1])
+    way = 0.002 * (0.6 + 0.2 * np.sin(0.3 * time[1:]))  # of the wheel that steers, or of the rear axle's middle
+    ahead, turn = (way * np.cos(middle), way * np.sin(middle) / (base * BASE_M)) if kind == "tricycle" else (
+        way, way * np.tan(middle) / (base * BASE_M))
+    pose = path_of(np.column_stack([ahead, 0.0 * ahead, turn]), np.zeros(3))
+    pose[:, :2] += ahead_m * np.column_stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])])
+    pose = np.column_stack([np.interp(time - lag_s, time, column) for column in pose.T])
+    rolled = [way] if kind == "tricycle" else [ahead - side * HALF_M * base * turn for side in (1.0, -1.0)]
+    wheels = [np.concatenate([[0.0], np.cumsum(each)]) / (radius * WHEEL_M) for each in rolled]
+    names = [f"wheel{number}" for number in range(len(wheels))]
+    rows = np.column_stack([time, *wheels, told, pose])[::60]
+    lines = [",".join(["t", *names, "steering_rad", "x", "y", "yaw"]),
+             *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]
+    (folder / "run.csv").write_text("\n".join(lines) + "\n")
+    (folder / "map.toml").write_text(
+        f'[time]\ncolumn = "t"\n[wheel_angle]\ncolumns = {json.dumps(names)}\n[steering_angle]\ncolumns = '
+        '["steering_rad"]\n[pose]\ncolumns = ["x", "y", "yaw"]\n')
+    return folder / "run.csv", folder / "map.toml"
+
+
+@pytest.mark.parametrize("kind", ["tricycle", "car"])
+@pytest.mark.parametrize(("off", "cause", "name", "value"), [
+    ({"radius": 1.04}, "radius of the wheels", "radius of the wheels, factor", 1.04),
+    ({"base": 1.08}, "distance of the wheels", "distance of the wheels, factor", 1.08),
+    ({"gain": 0.8}, "gain of the steering", "gain of the steering, factor", 0.8),
+    ({"offset": 0.03}, "offset of the steering", "offset of the steering", 0.03),
+    ({"ahead_m": 0.4}, "place of the tracker", "place of the tracker, x", 0.4)])
+def test_the_cause_gets_the_error_of_a_steered_vehicle(kind, off, cause, name, value, tmp_path, capsys):
+    found = audited(capsys, *steered_log(tmp_path, kind, **off), steered_scene(tmp_path, kind))
+    shares = {each["name"]: each["share"] for each in found["causes"]}
+    assert max(shares, key=shares.get) == cause and shares[cause] > 0.6
+    assert found["found"] < 0.05 * found["nominal"]
+    assert sum(shares.values()) + found["left"] == pytest.approx(1.0)
+    fitted = {each["name"]: each["value"] for each in found["fit"]["parameters"]}
+    assert fitted[name] == pytest.approx(value, rel=0.03)
+
+
+def test_a_late_tracker_of_a_steered_vehicle_is_found_with_its_lag(tmp_path, capsys):
+    found = audited(capsys, *steered_log(tmp_path, "car", lag_s=0.15, gain=0.9), steered_scene(tmp_path, "car"))
+    assert found["lag_s"] == pytest.approx(0.15, abs=0.02) and found["found"] < 0.1 * found["nominal"]
+
+
+@pytest.mark.parametrize(("kind", "controller", "base"), [
+    ("tricycle", "tricycle_controller", "wheel_radius"), ("car", "ackermann_steering_controller",
+                                                          "traction_wheels_radius")])
+def test_steered_vehicles_are_exported_for_their_controllers(kind, controller, base, tmp_path, capsys):
+    files = [tmp_path / name for name in ("control.yaml", "robot.h")]
+    options = [word for path in files for word in ("--export", str(path))]
+    scene = steered_scene(tmp_path, kind)
+    audited(capsys, *steered_log(tmp_path, kind, radius=1.03, base=1.05, offset=0.02), scene, "-o",
+            str(tmp_path / "out"), *options)
+    text = files[0].read_text()
+    given = {key: float(value) for key, value in re.findall(r"(\w+): ([\d.]+)$", text, re.MULTILINE)}
+    assert f"\n{controller}:\n" in text and "add 0.0" in text
+    assert given["wheelbase"] == pytest.approx(1.05 * BASE_M, rel=0.01)
+    assert given[base] == pytest.approx(1.03 * WHEEL_M, rel=0.01)
+    assert "ROBOT_STEERING_OFFSET_RAD (0.0" in files[1].read_text()
+    assert (tmp_path / "out" / "audit.png").read_bytes().startswith(b"\x89PNG")
+    page = (tmp_path / "out" / "audit.md").read_text()
+    assert "offset of the steering" in page and "mm/m ahead" in page and "rollers" not in page
+    log, mapping = tmp_path / "run.csv", tmp_path / "map.toml"
+    assert run(["audit", str(log), str(scene), "--map", str(mapping), "--export", str(tmp_path / "new.toml")]) == 2
+    assert "a scene with hinges is not written; export .yaml or .h" in capsys.readouterr().err
+
+
+TRICYCLE = recorded("tricycle")
+
+
+@pytest.mark.skipif(not TRICYCLE.is_dir(), reason="recorded runs are not here")
+def test_a_recorded_tricycle_is_audited_by_its_map_alone(tmp_path, capsys):
+    log, mapping = TRICYCLE / "run1.csv", tmp_path / "map.toml"
+    assert run(["logs", str(log), "--scene", "tricycle_agv", "-o", str(mapping)]) == 0
+    text = mapping.read_text().replace('[pose]', '[pose]\nmount = { x_m = 1.5 }')
+    steering, wheel = "ticks_per_turn = 8192\nscale = 0.545\noffset = -0.06", "ticks_per_turn = 5000\nscale = 0.0152"
+    text = re.sub("# ticks_per_turn.*", steering, text, count=1)
+    mapping.write_text(re.sub("# ticks_per_turn.*", wheel, text))
+    assert "wrap = 8192" in text and "wrap = 4294967296" in text
+    capsys.readouterr()
+    found = audited(capsys, log, mapping, Path("tricycle_agv"))
+    assert found["nominal"] > 0.05 and found["found"] < 0.003
+    fitted = {each["name"]: each["value"] for each in found["fit"]["parameters"]}
+    assert 1.4 * fitted["distance of the wheels, factor"] == pytest.approx(1.51, abs=0.03)
+    assert 1.5 + fitted["place of the tracker, x"] == pytest.approx(1.78, abs=0.03)

@@ -57,3 +57,22 @@ def test_the_bound_is_the_air_in_a_cube_as_wide_as_a_wheels_radius(tmp_path: Pat
 def test_the_bound_is_ten_times_the_way_to_the_farthest_rim(tmp_path: Path, metres: float, is_told: bool) -> None:
     told = any("as of their mass at" in each for each in imported(tmp_path, cart((5.0 * metres**2,) * 3)).remarks)
     assert told is is_told
+
+
+@pytest.mark.parametrize(("moments", "words"), [
+    ((0.1, 0.1, 0.0), "link base has a principal moment of 0 kg·m² next to 0.1 kg·m², as only a line has (izz = 0)"),
+    ((0.0, 0.1, 0.1), "as only a line has (ixx = 0)")])
+def test_a_moment_that_was_left_zero_is_told(tmp_path: Path, moments: tuple[float, float, float], words: str) -> None:
+    assert sum(words in remark for remark in imported(tmp_path, cart(moments)).remarks) == 1
+    assert not any("only a line" in remark for remark in imported(tmp_path, cart()).remarks)
+
+
+@pytest.mark.parametrize(("right_m", "is_told"), [(0.05, False), (0.0501, False), (0.06, True)])
+def test_wheels_of_two_sizes_on_one_axle_are_told(tmp_path: Path, right_m: float, is_told: bool) -> None:
+    text = robot(link("base", inertial(5.0, SOUND), BOX), wheel("left", "base", "0 0.2 -0.05"),
+                 wheel("right", "base", f"0 -0.2 {right_m - 0.1}", radius=right_m))
+    told = [remark for remark in imported(tmp_path, text).remarks if "are on one axle, and their radii" in remark]
+    assert len(told) == is_told
+    assert not told or "radii are 0.05 m and 0.06 m; if they are equal, --radius right=METRES" in told[0]
+    answered = import_robot(tmp_path / "robot.urdf", Answers(radius_m={"left": 0.05, "right": right_m}))
+    assert not any("are on one axle" in remark for remark in answered.remarks)

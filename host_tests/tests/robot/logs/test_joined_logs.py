@@ -160,3 +160,44 @@ def test_a_log_of_signals_is_compared_where_it_has_values(tmp_path, capsys):
     log.write_text(log.read_text().replace("x_m", "y_m", 1))
     assert run(["replay", str(log), SCENE]) == 2
     assert "has two columns 'y_m'; keep one of them" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("rest_unit", ["us", "ns", "ms"])
+@pytest.mark.parametrize("told_unit", ["us", "ns", "ms"])
+def test_a_rest_of_seconds_in_another_unit_than_the_map_says_is_told(told_unit, rest_unit, tmp_path, capsys):
+    rows, size = motion(161, 0.025), {"ms": 1e3, "us": 1e6, "ns": 1e9}[rest_unit]
+    cells = [[int(row[0]), round((row[0] % 1.0) * size), *row[1:]] for row in (rows + 1e-12).tolist()]
+    log = csv(tmp_path / "run.csv", cells, ("sec", "rest", *HEAD[1:]))
+    mapping = mapped(tmp_path, TEXT_MAP, change=[('column = "t"',
+                                                  f'columns = ["sec", "rest"]\nunits = ["s", "{told_unit}"]')])
+    status = run(["replay", str(log), str(SCENE), "--map", str(mapping), "--json"])
+    found = capsys.readouterr()
+    words = f"'rest' is given in {told_unit}, but begins again with each second before {size:.0f}, as {rest_unit} do"
+    assert (words in found.out + found.err) == (told_unit != rest_unit)
+    assert status in (0, 2) and (status == 0 or found.err.count("\n") == 1)
+
+
+def test_microseconds_beside_seconds_are_guessed(tmp_path, capsys):
+    rows = motion(161, 0.025)
+    cells = [[int(row[0]), round((row[0] % 1.0) * 1e6), *row[1:]] for row in (rows + 1e-12).tolist()]
+    log = csv(tmp_path / "run.csv", cells, ("stamp.sec", "stamp.nsec", *HEAD[1:]))
+    assert run(["logs", str(log)]) == 0
+    shown = capsys.readouterr().out
+    assert 'units = ["s", "us"]' in shown and "stamp.nsec is always less than 10^6, so it is taken for us" in shown
+
+
+@pytest.mark.parametrize(("blank", "words"), [(8, ""), (30, "whole ranges may be missing")])
+def test_a_counter_that_begins_again_on_blank_lines_is_told(blank, words, tmp_path, capsys):
+    rows = motion(161, 0.025)
+    counter = np.mod(np.round(rows[:, 1:3] * 40.0), 256)
+    wrap = int(np.argmax(np.diff(counter[:, 0]) < -128)) + 1
+    cells: list[list[float | None]] = [[row[0], *pair, *row[3:]] for row, pair in zip(
+        rows.tolist(), counter.tolist(), strict=True)]
+    for line in range(max(wrap - blank // 2, 1), wrap + blank // 2):
+        cells[line][1] = cells[line][2] = None
+    log = csv(tmp_path / "run.csv", cells, HEAD)
+    keys = 'columns = ["left", "right"]\nunit = "tick"\nticks_per_turn = 251.327412287\nwrap = 256'
+    mapping = mapped(tmp_path, TEXT_MAP, change=[('columns = ["left", "right"]', keys)])
+    remarks = [each for each in replayed(capsys, log, mapping)["remarks"] if "where nothing is recorded" in each]
+    assert remarks and "begins again (wrap = 256)" in remarks[0] and words in remarks[0]
+    assert ("whole ranges" in remarks[0]) == bool(words)

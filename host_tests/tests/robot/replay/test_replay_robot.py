@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bag_support import pose_at, scene_of, wheels_at
 from laconic.cli import main as cli
 from laconic.errors import BadInput
 from laconic.robot.replay import report
@@ -273,3 +274,27 @@ def test_robotino_currents_alone_do_not_give_the_wheel_speeds_and_the_report_sta
 @needs_records
 def test_robotino_files_that_are_no_runs_are_named(real_runs):
     assert real_runs.skipped == ["motor_identification.csv"]
+
+
+BAD_MAPS = {
+    "signs": ("sign = -1\n", "with the signs of all wheels reversed it would be"),
+    "one sign": ("signs = [1, -1]\n", "with the sign of wheel 2 reversed it would be"),
+    "order": ("wheels = [2, 1]\n", "with wheels 1 and 2 exchanged it would be"),
+    "ticks": ('unit = "tick"\nticks_per_turn = 12.566370614\n', "with wheels that turn 2 times as far (ticks_per_turn"),
+    "nothing": ("scales = [3, -0.2]\noffset = 1\n", "check the scene, or in the map the order and signs")}
+
+
+@pytest.mark.parametrize(("keys", "words"), BAD_MAPS.values(), ids=BAD_MAPS)
+def test_a_poor_fit_is_called_poor_with_what_would_mend_it(keys, words, tmp_path, capsys):
+    rows = [(0.02 * k, *wheels_at(0.02 * k), *pose_at(0.02 * k)) for k in range(200)]
+    log, mapping = tmp_path / "run.csv", tmp_path / "map.toml"
+    log.write_text("\n".join(["t,left,right,x,y,yaw", *(",".join(map(repr, row)) for row in rows)]) + "\n")
+    text = '[time]\ncolumn = "t"\n[wheel_angle]\ncolumns = ["left", "right"]\n{}[pose]\ncolumns = ["x", "y", "yaw"]\n'
+    for given, is_poor in (("", False), (keys, True)):
+        mapping.write_text(text.format(given))
+        assert cli.run(["replay", str(log), str(scene_of(tmp_path)), "--map", str(mapping), "--json"]) == 0
+        remarks = json.loads(capsys.readouterr().out)["remarks"]
+        assert sum("the fit is poor" in each for each in remarks) == is_poor
+    assert words in remarks[0]
+    assert cli.run(["replay", str(log), str(scene_of(tmp_path)), "--map", str(mapping)]) == 0
+    assert f"**{remarks[0]}**" in capsys.readouterr().out

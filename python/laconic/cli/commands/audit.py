@@ -16,7 +16,7 @@ EXPORTS = (".yaml", ".yml", ".h", ".toml")
 
 @click.command("audit")
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
-@click.argument("scene", type=SceneName())
+@click.argument("scene", type=SceneName(hinges=True))
 @map_option
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="Write audit.md, audit.json and a picture there.")
 @click.option("--export", "exports", type=OutputFile(*EXPORTS), multiple=True, metavar="FILE",
@@ -26,8 +26,8 @@ def command(logs: tuple[Path, ...], scene: str, map_path: Path | None, out: Path
             json_wanted: bool) -> None:
     """Compares the odometry of LOG..., recorded runs with a true pose, with SCENE, which comes last.
 
-    Radius and distance of the wheels, place of the tracker and the time lag between wheels and pose each get their
-    share of the error; what none of them explains is slip, or noise (docs/bags.md).
+    Radius and distance of the wheels, gain and offset of steered ones, place of the tracker and the time lag between
+    wheels and pose each get their share of the error; what none of them explains is slip, or noise (docs/bags.md).
     """
     from laconic.base.progress import progress_bar
     from laconic.robot.identify import audit_page

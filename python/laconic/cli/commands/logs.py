@@ -16,7 +16,8 @@ from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
 @click.argument("log", type=InputPath(), metavar="LOG")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="MAP.toml",
               help="Write the guessed map; - for stdout.")
-@click.option("--scene", type=SceneName(), help="The robot whose wheels the names of columns or joints are of.")
+@click.option("--scene", type=SceneName(hinges=True),
+              help="The robot whose wheels the names of columns or joints are of.")
 @click.option("--fields", "topic", metavar="TOPIC",
               help="Show the fields of one topic, with the values of its first message.")
 @json_flag("Machine-readable result on stdout.")

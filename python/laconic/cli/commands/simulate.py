@@ -19,7 +19,6 @@ from laconic.cli.options import (
     all_methods,
     belongs_to,
     check_step,
-    check_storage,
     json_flag,
     one_of,
     recorded_options,
@@ -65,7 +64,7 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
             plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool,
-            enclose_wanted: bool, json_wanted: bool, **views: Any) -> None:
+            enclose_wanted: bool, json_wanted: bool, recorded: Recorded) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
@@ -77,8 +76,6 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
-    check_storage(views["bag"], views["storage"])
-    recorded = Recorded(**views)
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
         not_with_hinges(given, enclose_wanted)

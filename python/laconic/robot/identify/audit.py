@@ -6,7 +6,7 @@ the error that comes back is its own. The shares are those of the squared errors
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,14 +15,16 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.ground import base_of
+from laconic.robot.identify.parameter import Vehicle
 from laconic.robot.identify.rolling_evidence import run_of, stretch_errors
+from laconic.robot.identify.solve import Fit
+from laconic.robot.identify.steered_audit import SteeredModel, lag_of_fit
 from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
 from laconic.robot.logs.poses import at_times
-from laconic.robot.replay.measures import path_length
+from laconic.robot.replay.measures import path_errors, path_length
 from laconic.robot.replay.missed_wraps import fitting
-from laconic.robot.replay.rolled_paths import roll
-from laconic.robot.replay.rolling import path_of, rolling_of
+from laconic.robot.replay.rolling import rolling_of
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
@@ -59,17 +61,50 @@ class Audit:
     study: Study            # the fit of all of them
     lag_s: float | None     # of the true pose behind the wheels; None: not found
     gains: dict[str, float]  # true motion over that of the fitted wheels, in each direction that the runs tell
+    gain_errors: dict[str, float]  # standard errors of these
     spread: np.ndarray      # root mean square of the stretches' errors: ahead, left [m for 1 m], turn [rad for 1 m]
+    model: RigidModel | SteeredModel
 
     @property
     def fitted(self) -> Scene:
         """The scene with the values found."""
-        return fitted_scene(self.scene, self.study.found)
+        return self.model.fitted(self.study.found)
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle with the values found, as the model takes it."""
+        found = self.study.found
+        return found.parameters.vehicle(base_of(self.scene, found.parameters), found.values)
+
+    def paths(self, log: Log) -> dict[str, np.ndarray]:
+        """Rolled by the scene as it is, and with the values found."""
+        return {"nominal": self.model.path(self.scene.vehicle, log), "fitted": self.model.path(self.vehicle, log)}
 
     @property
     def left(self) -> float:
         """The part of the squared error that no cause explains."""
         return min(1.0, (self.found / self.nominal) ** 2) if self.nominal > 0.0 else 1.0
+
+
+class RigidModel:
+    """How a vehicle without hinges rolls, by the values of a fit."""
+
+    free = FREE
+
+    def __init__(self, scene: Scene):
+        self.scene = scene
+
+    def path(self, vehicle: Vehicle, log: Log) -> np.ndarray:
+        """Poses at the samples' times, from the true first one; placed to fit positions alone."""
+        return rolling_of(self.scene.core(), vehicle, self.scene.path).path(log)
+
+    def fit(self, runs: Sequence[Log], groups: Sequence[str]) -> Study:
+        """Finds the values of some groups."""
+        return identify(self.scene, runs, geometry_of(self.scene, groups))
+
+    def fitted(self, found: Fit) -> Scene:
+        """The scene with the values found."""
+        return fitted_scene(self.scene, found)
 
 
 def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lambda *_, **__: None) -> Audit:
@@ -80,45 +115,51 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     runs = fitting(scene, logs)
     for run in runs:
         run.needs("pose", "an audit")
-    lag_s = lag_of(scene, runs)
+    model = SteeredModel(scene) if scene.has_hinges else RigidModel(scene)
+    free = {name: groups for name, groups in model.free.items() if name != TRACKER or _tells_tracker(runs)}
+    lag_s = None if LAG in free else lag_of(runs, [model.path(scene.vehicle, run) for run in runs])
     moved = runs if lag_s is None else [without_lag(run, lag_s) for run in runs]
     advance()
-    names = [name for name in (RADIUS, DISTANCE, TRACKER) if name != TRACKER or _tells_tracker(runs)]
-    study = identify(scene, moved, geometry_of(scene, [each for name in names for each in FREE[name]]))
+    study = model.fit(moved, [each for groups in free.values() for each in groups])
+    vehicle = study.found.parameters.vehicle(base_of(scene, study.found.parameters), study.found.values)
     advance()
-    fitted = fitted_scene(scene, study.found)
-    nominal, found = error_of(scene, runs), error_of(fitted, moved)
-    alone = {name: error_of(_with_nominal(study, FREE[name]), moved) for name in names}
+    nominal, found = error_of(model, scene.vehicle, runs), error_of(model, vehicle, moved)
+    alone = {name: error_of(model, _with_nominal(study, groups), moved) for name, groups in free.items()}
     if lag_s is not None:
-        alone[LAG] = error_of(fitted, runs)
-    gains, spread = leftovers(fitted, moved)
+        alone[LAG] = error_of(model, vehicle, runs)
+    gains, gain_errors, spread = leftovers([(run, model.path(vehicle, run)) for run in moved])
     advance()
-    causes = _causes(study, alone, nominal, found, lag_s)
-    return Audit(scene, moved, nominal, found, causes, study, lag_s, gains, spread)
+    causes = _causes(study, free, alone, (nominal, found), lag_s)
+    lag_s = lag_of_fit(study) if LAG in free else lag_s
+    return Audit(scene, moved, nominal, found, causes, study, lag_s, gains, gain_errors, spread, model)
 
 
-def _causes(study: Study, alone: dict[str, float], nominal: float, found: float, lag_s: float | None) -> list[Cause]:
+def _causes(study: Study, free: Mapping[str, Sequence[str]], alone: dict[str, float], errors: tuple[float, float],
+            lag_s: float | None) -> list[Cause]:
+    nominal, found = errors
     own = {name: max(0.0, error**2 - found**2) for name, error in alone.items()}
     whole, left = sum(own.values()), (found / nominal) ** 2 if nominal > 0.0 else 1.0
+    words = {name: in_words(study, groups) for name, groups in free.items()}
     return [Cause(name, max(0.0, 1.0 - left) * own[name] / whole if whole > 0.0 else 0.0, float(np.sqrt(own[name])),
-                  f"{1e3 * (lag_s or 0.0):.0f} ms" if name == LAG else in_words(study, FREE[name])) for name in alone]
+                  words.get(name, f"{1e3 * (lag_s or 0.0):.0f} ms")) for name in alone]
 
 
-def _with_nominal(study: Study, groups: Sequence[str]) -> Scene:
-    """The fitted scene, where parameters of some groups have the values that the scene states."""
+def _with_nominal(study: Study, groups: Sequence[str]) -> Vehicle:
+    """The fitted vehicle, where parameters of some groups have the values that the scene states."""
     parameters = study.found.parameters
     values = np.array([each.nominal if each.group in groups else value
                        for each, value in zip(parameters.each, study.found.values, strict=True)])
-    return replace(study.scene, vehicle=parameters.vehicle(base_of(study.scene, parameters), values))
+    return parameters.vehicle(base_of(study.scene, parameters), values)
 
 
 def _tells_tracker(runs: Sequence[Log]) -> bool:
     return all(run.has_heading and run.pose_point == "origin" for run in runs)
 
 
-def error_of(scene: Scene, runs: Sequence[Log]) -> float:
+def error_of(model: RigidModel | SteeredModel, vehicle: Vehicle, runs: Sequence[Log]) -> float:
     """Root mean square over the runs."""
-    errors = [each.path_error for each in roll(scene, runs).errors if each.path_error is not None]
+    every = [path_errors(run.stem, run, model.path(vehicle, run)).path_error for run in runs]
+    errors = [each for each in every if each is not None]
     if not errors:
         raise BadInput(f"{runs[0].path}: its true path has no length; give runs in which the robot moves")
     return float(np.sqrt(np.mean(np.square(errors))))
@@ -133,11 +174,9 @@ def in_words(study: Study, names: Sequence[str]) -> str:
     return ", ".join(words)
 
 
-def lag_of(scene: Scene, runs: Sequence[Log]) -> float | None:
-    """How late the true pose is: at which shift its speed and turn are most like those of the wheels, whatever their
-    size. None where no shift is worth a word."""
-    rolling = rolling_of(scene.core(), scene.vehicle, scene.path)
-    paths = [path_of(rolling.moved(run.rotation_rad(), run.pose_point), np.zeros(3)) for run in runs]
+def lag_of(runs: Sequence[Log], paths: Sequence[np.ndarray]) -> float | None:
+    """How late the true pose is against the rolled paths: at which shift its speed and turn are most like theirs,
+    whatever their size. None where no shift is worth a word."""
     most = min(MOST_LAG_S, 0.1 * min(float(run.time_s[-1]) for run in runs))
 
     def unlike(lag_s: float) -> float:
@@ -184,21 +223,20 @@ def without_lag(log: Log, lag_s: float) -> Log:
     if len(rows) < 2:
         return log
     moved = at_times(log.time_s[rows] + lag_s, log.time_s[seen], log.pose[seen])
-    parts: dict[str, Any] = {name: value[rows] for name in PER_ROW if (value := getattr(log, name)) is not None}
+    parts: dict[str, Any] = {name: value[rows] for name, value in vars(log).items()
+                             if isinstance(value, np.ndarray) and name not in OF_ROWS}
     return replace(log, time_s=log.time_s[rows] - log.time_s[rows[0]], pose=moved, pose_rows=None, **parts)
 
 
-PER_ROW = ("set_speed_rad_per_s", "wheel_angle_rad", "wheel_speed_rad_per_s", "current_A", "voltage_V",
-           "yaw_rate_rad_per_s", "moved")
+OF_ROWS = ("time_s", "pose", "pose_rows")     # which are made anew
 
 
-def leftovers(scene: Scene, runs: Sequence[Log]) -> tuple[dict[str, float], np.ndarray]:
-    """(true over rolled motion in each direction that the runs tell, spread of the stretches' errors for a metre)."""
-    rolling = rolling_of(scene.core(), scene.vehicle, scene.path)
+def leftovers(runs: Sequence[tuple[Log, np.ndarray]]) -> tuple[dict[str, float], dict[str, float], np.ndarray]:
+    """(true over rolled motion in each direction that the runs tell, standard errors of that, spread of the stretches'
+    errors for a metre) of runs with their rolled paths."""
     told, true, errors = [], [], []
-    for log in runs:
-        run = run_of(log)
-        path = run.path(rolling.moved(run.rotation_rad, run.point))
+    for log, path in runs:
+        run = run_of(log, by_wheels=False)
         off = stretch_errors(run, path)
         step, heading = np.diff(path[run.cuts], axis=0), path[run.cuts[:-1], 2]
         cos, sin = np.cos(heading), np.sin(heading)
@@ -207,9 +245,12 @@ def leftovers(scene: Scene, runs: Sequence[Log]) -> tuple[dict[str, float], np.n
         true.append(motion - off)
         errors.append(off / max(path_length(log.time_s, path) / len(off), 1e-9))
     rolled, wanted = np.vstack(told), np.vstack(true)
-    gains = {}
+    gains, gain_errors = {}, {}
     size = np.sqrt((rolled**2).mean(axis=0))
     for index, name in enumerate(DIRECTIONS):
         if size[index] > LEAST_MOVED * size[:2].max() and size[index] > 0.0:
-            gains[name] = float((rolled[:, index] * wanted[:, index]).sum() / (rolled[:, index] ** 2).sum())
-    return gains, np.sqrt((np.vstack(errors) ** 2).mean(axis=0))
+            whole = float((rolled[:, index] ** 2).sum())
+            gains[name] = float((rolled[:, index] * wanted[:, index]).sum() / whole)
+            left = wanted[:, index] - gains[name] * rolled[:, index]
+            gain_errors[name] = float(np.sqrt((left**2).sum() / max(len(left) - 1, 1) / whole))
+    return gains, gain_errors, np.sqrt((np.vstack(errors) ** 2).mean(axis=0))

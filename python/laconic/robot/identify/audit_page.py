@@ -12,19 +12,26 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot.identify.audit import LEFT, Audit
 from laconic.robot.identify.fitted_toml import fitted_text
+from laconic.robot.identify.ground import has_rollers
 from laconic.robot.identify.report import as_numbers as numbers_of_study
+from laconic.robot.identify.rolling_evidence import STRETCHES
+from laconic.robot.identify.steered_audit import controllers_text as steered_text
+from laconic.robot.identify.steered_audit import own_of, place_of_wheel
 from laconic.robot.logs.log import counted, remarks_of
-from laconic.robot.replay.rolled_paths import roll
 from laconic.robot.replay.rolling import wheel_radii
 from laconic.scene.base import usual_joints
 
 WORTH_A_LINE = 0.002    # of a radius
+SLIPS, DEVIATIONS = 0.02, 2.0   # of true over rolled motion: what is beyond both it and so many standard errors
 PARALLEL_RAD = 0.02     # between axles that count as one direction
 
 
 def export(found: Audit, path: Path) -> str:
     """The text for a file of this ending."""
     if path.suffix.lower() == ".toml":
+        if found.scene.has_hinges:
+            raise BadInput(f"--export {path}: a scene with hinges is not written; export .yaml or .h, whose numbers "
+                           "go into the scene and the map by hand")
         return fitted_text(found.study)
     if path.suffix.lower() == ".h":
         return header_text(found, path)
@@ -45,8 +52,12 @@ def _is_differential(wheels: list[dict[str, Any]]) -> bool:
 
 
 def controllers_text(found: Audit) -> str:
-    """Parameters of diff_drive_controller or mecanum_drive_controller."""
+    """Parameters of diff_drive_controller, mecanum_drive_controller, or those of steered vehicles."""
     wheels = found.scene.vehicle["wheel"]
+    if found.scene.has_hinges:
+        hinges = [f"{hinge.name}_hinge_joint" for hinge in found.scene.hinges]
+        lines = steered_text(found.scene, found.fitted, own_of(found.vehicle), _joints(found), hinges)
+        return "\n".join([*_head(found, "#"), *lines, ""])
     if _is_differential(wheels):
         return _differential(found)
     if len(wheels) == 4 and all(wheel["kind"] not in ("fixed",) for wheel in wheels) and all(
@@ -107,8 +118,14 @@ def header_text(found: Audit, path: Path) -> str:
     radii = wheel_radii(vehicle)
     rows = [("ROBOT_WHEEL_COUNT", str(len(radii)))]
     for number, (radius, wheel) in enumerate(zip(radii, vehicle["wheel"], strict=True), start=1):
-        values = {"RADIUS_M": radius, "X_M": wheel["x_m"], "Y_M": wheel["y_m"], "AXLE_RAD": wheel["axle_rad"]}
+        x_m, y_m = place_of_wheel(found.fitted, wheel)
+        values = {"RADIUS_M": radius, "X_M": x_m, "Y_M": y_m, "AXLE_RAD": wheel["axle_rad"]}
         rows += [(f"ROBOT_WHEEL_{number}_{key}", f"{value:.9g}") for key, value in values.items()]
+    if found.scene.has_hinges:
+        own = own_of(found.vehicle)
+        rows += [(f"ROBOT_{name}", f"{own[key]:.9g}") for name, key in (
+            ("STEERING_GAIN", "gain"), ("STEERING_OFFSET_RAD", "offset"), ("TRACKER_X_M", "x"), ("TRACKER_Y_M", "y"),
+            ("TRACKER_HEADING_RAD", "heading"))]
     if found.lag_s is not None:
         rows.append(("ROBOT_POSE_LAG_S", f"{found.lag_s:.9g}"))
     lines = [f"#define {name} ({value})" for name, value in rows]
@@ -142,12 +159,16 @@ def as_text(found: Audit, picture: str | None = None) -> str:
 def words_of_rest(found: Audit) -> list[str]:
     """Spread of single stretches, and gains of the motion against the fitted wheels."""
     ahead, left, turn = found.spread
-    words = [f"for each metre of way the robot is off by {1e3 * ahead:.1f} mm ahead, {1e3 * left:.1f} mm to the left "
-             f"and {np.degrees(turn):.2f}° (root mean square over stretches)"]
+    words = [f"per metre of way the fitted odometry errs by {1e3 * ahead:.1f} mm/m ahead, {1e3 * left:.1f} mm/m to the "
+             f"left and {np.degrees(turn):.2f}°/m in heading: root mean square over stretches (a {STRETCHES}th of a "
+             "run each), whose errors partly cancel along the path"]
+    why = "rollers slip or drag there" if has_rollers(found.scene) else "wheels slip there"
     for name, gain in found.gains.items():
-        kind = "turns" if name == "turn" else f"moves {name}"
-        words.append(f"the robot {kind} {gain:.4f} of what the fitted wheels tell" + (
-            ": rollers slip or drag there" if abs(gain - 1.0) > 0.02 else ""))
+        what = "radian that the fitted wheels turn it, the robot turns" if name == "turn" else \
+            f"metre that the fitted wheels roll {name}, the robot moves"
+        is_off = abs(gain - 1.0) > max(SLIPS, DEVIATIONS * found.gain_errors[name])
+        words.append(f"for each {what} {gain:.4f} {'rad' if name == 'turn' else 'm'}"
+                     + (f": {why}, or a number is off that was not free" if is_off else ""))
     words.append("no time lag was found between wheels and pose" if found.lag_s is None else
                  f"the pose is {abs(1e3 * found.lag_s):.0f} ms {'behind' if found.lag_s > 0 else 'ahead of'} the "
                  f"wheels; lag_s = {found.lag_s:g} under [pose] in the map takes it out")
@@ -158,7 +179,7 @@ def as_numbers(found: Audit) -> dict[str, Any]:
     """For JSON."""
     return {"nominal": found.nominal, "found": found.found, "left": found.left,
             "causes": [asdict(cause) for cause in found.causes],
-            "lag_s": found.lag_s, "gains": found.gains,
+            "lag_s": found.lag_s, "gains": found.gains, "gain_errors": found.gain_errors,
             "spread": dict(zip(SPREADS, found.spread.tolist(), strict=True)),
             "fit": numbers_of_study(found.study)}
 
@@ -170,7 +191,7 @@ def draw(found: Audit, path: Path) -> None:
     index = int(np.argmax([len(log.time_s) for log in found.logs]))
     log = found.logs[index]
     assert log.pose is not None
-    paths = {name: roll(scene, [log]).paths[0] for name, scene in (("nominal", found.scene), ("fitted", found.fitted))}
+    paths = found.paths(log)
     picture = figure(11.0, 4.6)
     where, how_much, along = picture.subplots(1, 3)
     where.plot(log.pose[log.seen, 0], log.pose[log.seen, 1], color="k", lw=2.6, alpha=0.35, label="true")

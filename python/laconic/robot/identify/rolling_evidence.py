@@ -8,7 +8,7 @@ follows.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from laconic.robot.logs.log import Point
 from laconic.robot.replay.measures import LEAST_LENGTH_M, path_length
 from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import path_of, rolling_of
+from laconic.robot.replay.steered_signals import begun_at, late, of_log
 
 POINTS = 120      # of a path that are compared
 STRETCHES = 24    # of a run whose errors count as independent
@@ -39,46 +40,53 @@ class Run:
     scale: float            # 1 / (length · √points)
     has_heading: bool = True
 
-    def path(self, moved: np.ndarray) -> np.ndarray:
-        """The path of displacements, from the true first pose; where positions alone are known, fitted to them."""
-        if self.has_heading:
+    time_s: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    def path(self, moved: np.ndarray, lag_s: float = 0.0) -> np.ndarray:
+        """The path of displacements, from the true first pose; where positions alone are known, fitted to them. With a
+        lag of the tracker, what it saw at each sample."""
+        if self.has_heading and lag_s == 0.0:
             return path_of(moved, self.pose[0])
-        return fitted(path_of(moved, np.zeros(3)), self.taken, self.pose[self.taken, :2])
+        path = late(path_of(moved, np.zeros(3)), self.time_s, self.time_s, lag_s)
+        return begun_at(path, self.pose[0]) if self.has_heading else fitted(
+            path, self.taken, self.pose[self.taken, :2])
 
 
 class RollingEvidence:
     """Runs with a true pose, for `solve.fit`."""
 
-    directions = 2
+    directions: float = 2
     difference = 0.0
+    by_wheels = True
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
         self._core, self._path = core, scene_path
         self.sessions = [str(log.path.resolve().parent) for log in logs]
-        self.runs = [run_of(log) for log in logs]
+        self.runs = [run_of(log, by_wheels=self.by_wheels) for log in logs]
 
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Distances x, y between rolled and true path."""
-        rolling = rolling_of(self._core, vehicle, self._path)
-        return [path_residual(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
+        return [path_residual(run, run.path(rolling.moved(run.rotation_rad, run.point), lag_s)) for run in self.runs]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch: its error, carried to all points of the path after it, times the Jacobian there."""
-        rolling = rolling_of(self._core, vehicle, self._path)
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
         found = []
         for run, jacobian in zip(self.runs, jacobians, strict=True):
-            path = run.path(rolling.moved(run.rotation_rad, run.point))
+            path = run.path(rolling.moved(run.rotation_rad, run.point), lag_s)
             found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
         return found
 
     def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Of each stretch of each run: displacement ahead and to the left, turn."""
-        rolling = rolling_of(self._core, vehicle, self._path)
-        return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
+        return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point), lag_s)) for run in self.runs]
 
 
-def run_of(log: Log) -> Run:
-    """BadInput for a log without a true pose, or whose true path has no length."""
+def run_of(log: Log, *, by_wheels: bool = True) -> Run:
+    """BadInput for a log without a true pose, or whose true path has no length. `by_wheels`: their rotations are
+    used."""
     pose = log.needs("pose", "identify")
     seen = log.seen
     length = path_length(log.time_s[seen], pose[seen])
@@ -87,8 +95,9 @@ def run_of(log: Log) -> Run:
     last = len(seen) - 1
     taken = seen[np.unique(np.linspace(0, last, POINTS + 1).astype(int)[1:])]
     cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
-    return Run(log.rotation_rad(), pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
-               log.has_heading)
+    rotation = log.rotation_rad() if by_wheels else np.zeros((len(log.time_s) - 1, 0))
+    return Run(rotation, pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
+               log.has_heading, log.time_s)
 
 
 def path_residual(run: Run, path: np.ndarray) -> np.ndarray:

@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from laconic.robot.importer.answers import Answers, answer
+from laconic.robot.importer.axle_lines import lines_of
 from laconic.robot.importer.rigid_body import RigidBody
-from laconic.robot.importer.robot_tree import Robot
+from laconic.robot.importer.robot_tree import Link, Robot
 from laconic.robot.importer.wheels import Ground
+from laconic.scene.axle_lines import grouped
 
 THIN = 1e-3        # more than a flat body's largest moment: rounding in a file
+NOTHING = 1e-6     # of the largest moment: what is less is 0
+UNEQUAL = 5e-3     # of a radius: more than rounding in a file
 AIR_KG_PER_M3 = 1.2
 FAR = 10.0         # times the way to the farthest wheel's rim, beyond which no robot has its mass
 COUNTED = "counted as it is given"
@@ -17,8 +21,8 @@ COUNTED = "counted as it is given"
 
 def doubts_of(robot: Robot, ground: Ground, whole: RigidBody, answers: Answers) -> list[str]:
     """A line for each number, or pair of them, that no robot has."""
-    return [*moments_of_no_body(robot), *inertias_of_no_wheel(ground, answers), *lighter_than_air(ground, whole),
-            *farther_than_the_robot(ground, whole)]
+    return [*moments_of_no_body(robot), *radii_of_one_axle(ground, answers), *inertias_of_no_wheel(ground, answers),
+            *lighter_than_air(ground, whole), *farther_than_the_robot(ground, whole)]
 
 
 def moments_of_no_body(robot: Robot) -> list[str]:
@@ -29,9 +33,33 @@ def moments_of_no_body(robot: Robot) -> list[str]:
         if least < -1e-9 * abs(most):
             found.append(f"link {link.name} has a principal moment of {least:.3g} kg·m², which no body has; it is "
                          f"{COUNTED}")
+        elif link.mass_kg > 0.0 and least < NOTHING * most:
+            found.append(f"link {link.name} has a principal moment of {max(least, 0.0):.3g} kg·m² next to {most:.3g} "
+                         f"kg·m², as only a line has ({_zeros(link)}); it is {COUNTED}; correct it in the file")
         elif most > (1.0 + THIN) * (least + middle):
             found.append(f"link {link.name} has a principal moment of {most:.3g} kg·m², more than its other two "
                          f"together, which no body has; it is {COUNTED}")
+    return found
+
+
+def _zeros(link: Link) -> str:
+    """Which of its moments the file leaves 0."""
+    names = [name for name, value in zip(("ixx", "iyy", "izz"), np.diag(link.inertia_kgm2), strict=True)
+             if abs(value) < NOTHING * float(np.abs(link.inertia_kgm2).max())]
+    return f"{', '.join(names)} = 0" if names else "about an axis between the file's own"
+
+
+def radii_of_one_axle(ground: Ground, answers: Answers) -> list[str]:
+    """Two wheels of one axle that differ in size: a robot so made leans, and drives circles when they turn alike."""
+    found = []
+    for group, _ in grouped(lines_of(ground.wheels)):
+        wheels = [ground.wheels[index] for index in group]
+        plain = [wheel for wheel in wheels if answer(answers.radius_m, wheel.name) is None]
+        least, most = (pick(wheels, key=lambda wheel: wheel.radius_m) for pick in (min, max))
+        if len(wheels) > 1 and plain and most.radius_m > (1.0 + UNEQUAL) * least.radius_m:
+            found.append(f"wheels {least.name} and {most.name} are on one axle, and their radii are "
+                         f"{least.radius_m:.4g} m and {most.radius_m:.4g} m; if they are equal, --radius "
+                         f"{most.name}=METRES says so")
     return found
 
 

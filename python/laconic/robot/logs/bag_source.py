@@ -25,7 +25,7 @@ from laconic.robot.bags.samples import (
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.log import LEAST_SAMPLES, PER_WHEEL
 from laconic.robot.logs.quantity import Column, Quantity
-from laconic.robot.logs.sources import Raw, Source, checked_time, numbered
+from laconic.robot.logs.sources import Raw, Source, checked_time, doubt_of_rest, numbered
 from laconic.robot.logs.units import ISO, TIME
 
 HDF5_MAGIC = b"\x89HDF"
@@ -119,8 +119,10 @@ def mat_source(path: Path, columns: ColumnMap) -> Source:
         return found, [repr(str(name)) for name in names]
 
     is_row = np.isin(instants, main) if others else None
+    parts = [_vector(path, vectors, each, "time") for each in of_time.columns]
+    doubts = doubt_of_rest(of_time, parts) if len(parts) == 2 else []
     return Source(path, instants - instants[0], raw, lambda row: f"sample {row + 1}", is_row,
-                  lines=lambda given: f"{len(given)} samples are", tells_gaps=bool(others))
+                  lines=lambda given: f"{len(given)} samples are", tells_gaps=bool(others), remarks=tuple(doubts))
 
 
 def _own_time(path: Path, vectors: Mapping[str, np.ndarray], of_time: Quantity, quantity: Quantity) -> np.ndarray:

@@ -16,6 +16,7 @@ from laconic.scene.scene_text import value_text
 
 FEWEST_WHEELS, MOST_WHEELS = 2, 8
 HALF_TURN_DEG = 50.0
+FEWEST_ROWS = 20  # in which nanoseconds are never all below a millisecond
 STEPS = 20.0      # of a usual size in the range of a column that counts on
 TIMES = ("t", "time", "timestamp", "stamp", "clock", "sec", "secs", "seconds")
 TRUE = {"true", "truth", "gt", "mocap", "vicon", "optitrack", "tracker", "marker", "camera", "ground", "qualisys",
@@ -61,10 +62,52 @@ def guess_table(columns: Mapping[str, np.ndarray], texts: Mapping[str, str]) -> 
     _yaw_rate(found, left)
     left = {name: values for name, values in left.items() if name not in found.meaning}
     _wheels(found, left)
-    if steered := [name for name in left if STEERED & set(words_of(name))]:
-        found.notes.append(f"{', '.join(steered[:4])}: may be angles of steering; name them under "
-                           "[steering_angle], for a scene with steered wheels")
+    _steering(found, {name: values for name, values in left.items() if name not in found.meaning})
     return found
+
+
+def _steering(found: Guess, columns: Mapping[str, np.ndarray]) -> None:
+    """Angles of steered wheels, and the only wheel that drives beside them."""
+    steered = [name for name in columns if STEERED & set(words_of(name))
+               and not {"rate", "vel", "velocity", "speed", "current", "voltage"} & set(words_of(name))]
+    sure = [name for name in steered if set(words_of(name)) & STEERED != {"delta"}]
+    if not sure:
+        if steered:
+            found.notes.append(f"{', '.join(steered[:4])}: may be angles of steering; name them under "
+                               "[steering_angle], for a scene with steered wheels")
+        return
+    words = set(words_of(sure[0]))
+    largest = float(max(np.nanmax(np.abs(columns[name]), initial=0.0) for name in sure))
+    unit = "tick" if words & TICKS else next((ANGLES[word] for word in words if word in ANGLES), "") or (
+        "deg" if largest > HALF_TURN_DEG else "rad")
+    _enter(found, columns, "steering_angle", unit, sure)
+    entry = found.entries["steering_angle"]
+    if unit == "tick" and "wrap" not in entry and (wraps := [size for name in sure if (size := _begins_again(
+            columns[name]))]):
+        entry["wrap"] = max(wraps)
+        found.notes.append(f"steering_angle: jumps across its whole range, so it probably begins again after "
+                           f"{max(wraps)}; correct wrap if the encoder has another size")
+    found.notes.append(f"{', '.join(sure)}: taken for angles of the scene's steered hinges in their order, to the left "
+                       "above 0; hinges = [...] names them, offset and sign correct them")
+    if {"wheel_angle", "wheel_speed"} & set(found.entries):
+        return
+    lone = [name for name in columns if name not in sure and not set(words_of(name)) & (ASKED | {"set", "torque"})
+            and {"traction", "drive", "driven", "wheel", "motor"} & set(words_of(name))]
+    for name in lone:
+        quantity = _quantity([word for word in words_of(name) if word not in ("traction", "driven")],
+                             [columns[name]])
+        if quantity is not None and quantity[0] in ("wheel_angle", "wheel_speed"):
+            _enter(found, columns, quantity[0], quantity[1], [name])
+            found.missing = [each for each in found.missing if not each.startswith("wheels:")]
+            return
+
+
+def _begins_again(values: np.ndarray) -> int | None:
+    """The size of an absolute encoder that jumps from its one end to the other."""
+    there = values[~np.isnan(values)]
+    if len(there) < 2 or there.min() < 0.0 or np.abs(np.diff(there)).max() < 0.5 * np.ptp(there) or there.max() < 64.0:
+        return None
+    return 1 << int(there.max()).bit_length()
 
 
 def _time(found: Guess, columns: Mapping[str, np.ndarray], texts: Mapping[str, str]) -> None:
@@ -75,8 +118,12 @@ def _time(found: Guess, columns: Mapping[str, np.ndarray], texts: Mapping[str, s
             mate = next((other for other, others in by_words.items() if others[:-1] == words[:-1] and others
                          and others[-1] in ("sec", "secs", "seconds", "s")), None)
             if mate is not None:
-                found.entries["time"] = {"columns": [mate, name], "units": ["s", "ns"]}
-                found.meaning |= {mate: "time [s]", name: "time [ns]"}
+                most = float(np.nanmax(np.abs(columns[name]), initial=0.0))
+                unit = "us" if 1e3 <= most < 1e6 and len(columns[name]) > FEWEST_ROWS else "ns"
+                found.entries["time"] = {"columns": [mate, name], "units": ["s", unit]}
+                found.meaning |= {mate: "time [s]", name: f"time [{unit}]"}
+                if unit != "ns":
+                    found.notes.append(f"time: {name} is always less than 10^6, so it is taken for {unit}")
                 return
     from laconic.robot.logs.sources import is_date
 
@@ -247,10 +294,10 @@ def _enter(found: Guess, columns: Mapping[str, np.ndarray], quantity: str, unit:
                              "the turns of the encoder for one of the wheel, where it is not 1)")
     if unit in ("m", "m/s"):
         found.notes.append(f"{quantity}: metres become angles by the scene's radius; radius_m gives another one")
-    if quantity == "wheel_angle":
+    if quantity in ("wheel_angle", "steering_angle"):
         values = [columns[name][~np.isnan(columns[name])] for name in names]
         wraps = [wrap for each in values if (wrap := wrap_of(each, unit)) is not None]
-        if unit == "tick" and not wraps and all(map(_are_increments, values)):
+        if quantity == "wheel_angle" and unit == "tick" and not wraps and all(map(_are_increments, values)):
             entry["kind"] = "increments"
             found.notes.append(f"{quantity}: the columns look like ticks since the row before; take kind out if they "
                                "are counters")
@@ -261,7 +308,8 @@ def _enter(found: Guess, columns: Mapping[str, np.ndarray], quantity: str, unit:
                                f"{most:.9g}; correct wrap if the counter has another size")
     found.entries[quantity] = entry
     found.meaning |= dict.fromkeys(names, f"{quantity} [{unit}]")
-    found.wheels = found.wheels or tuple(names)
+    if quantity != "steering_angle":
+        found.wheels = found.wheels or tuple(names)
 
 
 def _stem(name: str) -> tuple[tuple[str, ...], str] | None:

@@ -226,6 +226,8 @@ def _assign(guess: Guess, wheels: Sequence[Mapping[str, Any]]) -> None:
     """The wheels of the scene by their names, written into the map."""
     if not guess.wheels:
         return
+    if len(guess.wheels) == sum(wheel.get("driven", True) for wheel in wheels) == 1:
+        return  # the only driven wheel
     places = places_by_name(guess.wheels, wheels)
     if places is None:
         guess.notes.append(f"the names {', '.join(guess.wheels)} do not say which of the scene's {len(wheels)} wheels "

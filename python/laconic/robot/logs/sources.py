@@ -20,6 +20,7 @@ from laconic.robot.logs.units import ISO, TIME
 
 DATE = re.compile(r"(\d{4})[-/](\d\d?)[-/](\d\d?)[T ]+(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?\s*(Z|[+-]\d\d:?\d\d)?")
 EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
+MOST_OF_SECOND = 0.6   # a rest that goes so far before the second changes has its unit's border there
 EXACT = {"ms": 10**3, "us": 10**6, "ns": 10**9, "s": 1}
 
 
@@ -48,6 +49,23 @@ def _wrapped(path: Path, quantity: Quantity, cells: Sequence[Sequence[str]], lin
 def _since_first(values: np.ndarray, wrap: float) -> np.ndarray:
     """What a clock that begins again after `wrap` counted since its first value."""
     return np.concatenate([[0.0], np.cumsum(np.mod(np.diff(values), wrap))])
+
+
+def doubt_of_rest(quantity: Quantity, parts: Sequence[np.ndarray]) -> list[str]:
+    """A remark where seconds and their rest show another unit of the rest: it begins again with each second at the
+    border of that unit."""
+    seconds, rest = parts if quantity.units[0] == "s" else parts[::-1]
+    unit = quantity.units[1 if quantity.units[0] == "s" else 0]
+    changes = np.flatnonzero(np.diff(seconds) == 1.0)
+    border = next((name for name in ("ms", "us", "ns") if np.abs(rest).max() < EXACT[name]), None)
+    if border in (None, unit) or unit not in EXACT or not len(changes):
+        return []
+    high, low = rest[changes] / EXACT[border], rest[changes + 1] / EXACT[border]
+    if not (np.median(high) > MOST_OF_SECOND and np.median(low) < 1.0 - MOST_OF_SECOND):
+        return []
+    column = quantity.columns[list(quantity.units).index(unit)]
+    return [f"time: {shown(column)} is given in {unit}, but begins again with each second before {EXACT[border]}, as "
+            f"{border} do; give {border} in its place under [time] in the map"]
 
 
 def _instant(path: Path, quantity: Quantity, texts: Sequence[str], line: int) -> Fraction:
@@ -145,16 +163,23 @@ def _text_source(path: Path, columns: ColumnMap) -> Source:
         return (table.numbers(indices, quantity.name, may_be_blank=quantity.name != "time", keyword=quantity.keyword),
                 [table.label(index) for index in indices])
 
-    of_time = columns.quantities["time"]
+    of_time, remarks = columns.quantities["time"], list(table.remarks)
     if needs_texts(of_time):
         indices = table.indices_of(of_time.columns, "time")
-        time = checked_time(path, of_time, seconds_of(path, of_time, table.cells(indices), table.lines), table.lines)
+        cells = table.cells(indices)
+        seconds = seconds_of(path, of_time, cells, table.lines)
+        if len(indices) == 2 and of_time.units[0] != ISO:
+            remarks += doubt_of_rest(of_time, list(np.array(cells, dtype=float).T))
+        try:
+            time = checked_time(path, of_time, seconds, table.lines)
+        except BadInput as why:
+            raise BadInput("; ".join(map(str, (why, *remarks)))) from None
     else:
         found = raw(of_time)
         assert found is not None
         time = _time(path, of_time, found[0][:, 0], table.lines)
     return Source(path, time, raw, lambda row: f"line {table.lines[row]}",
-                  lines=lambda rows: _lines(table, rows), remarks=table.remarks)
+                  lines=lambda rows: _lines(table, rows), remarks=tuple(remarks))
 
 
 def _time(path: Path, quantity: Quantity, values: np.ndarray, lines: Sequence[int]) -> np.ndarray:

@@ -18,6 +18,7 @@ UNCERTAIN = 0.45        # of the wrap, from one sample to the next: the directio
 MANY = 20.0             # times the usual step: a jump, in a column whose unit is not known
 SEVERAL = 4.0           # times the usual step: a jump there, too, where it comes again by the same size
 REMEDY = "record more often, or count with a larger wrap"
+LONG = 2.5              # times the usual time between values: there are blank rows between them
 SMALL = 4.0             # steps around a jump that a counter's size may be off by
 
 Place = Callable[[int], str]
@@ -69,6 +70,25 @@ def doubt_of(name: str, steps: np.ndarray, modulus: float, place: Place, said: s
                 f"{place(worst + 2)}, which may be {after + np.copysign(100.0, before):.0f} %, so its direction is "
                 f"uncertain; {REMEDY}")
     return None
+
+
+def hidden_wraps(name: str, values: np.ndarray, unwrapped: np.ndarray, time_s: np.ndarray, place: Place,
+                 wrap: tuple[float, str]) -> str | None:
+    """A remark where a column begins again between two values that are far apart in time, with nothing between: how far
+    it turned there is taken as the shorter way. `wrap`: its modulus, and as the map has it."""
+    modulus, said = wrap
+    apart_s = np.diff(time_s)
+    hidden = np.flatnonzero((np.abs(np.diff(values)) > 0.5 * modulus) & (apart_s > LONG * np.median(apart_s))) if len(
+        apart_s) else np.zeros(0, int)
+    if not len(hidden):
+        return None
+    first, more = int(hidden[0]), f", and so {len(hidden) - 1} times more" if len(hidden) > 1 else ""
+    speed = (unwrapped[first] - unwrapped[first - 1]) / apart_s[first - 1] if first else 0.0
+    share = abs(float(speed * apart_s[first])) / modulus
+    doubt = (f"; at its speed before it would turn by {100.0 * share:.0f} % of that, so whole ranges may be missing"
+             if share > UNCERTAIN else "")
+    return (f"{name} begins again ({said}) where nothing is recorded, between {place(first)} and {place(first + 1)}"
+            f"{more}; the rows between are interpolated along the shorter way{doubt}")
 
 
 def refuse_jumps(path: Path, name: str, values: np.ndarray, turn: float, place: Place) -> None:

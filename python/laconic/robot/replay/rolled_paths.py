@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from laconic.robot.logs import Log
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.measures import RunErrors, grand_mean, session_means
 from laconic.robot.replay.missed_wraps import fitting
+from laconic.robot.replay.poor_fit import words_of_poor
 from laconic.robot.replay.predicted import predict
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -22,6 +24,8 @@ MOST_PANELS = 12
 SAID = {
     "wheel-speeds": "the recorded rotation of the wheels, rolled without slip",
     "steered": "the recorded rotation of the wheels at the recorded steering angles, rolled without slip",
+    "steered with friction": "the recorded rotation of the wheels, or the commanded speed, at the recorded steering "
+                             "angles, on ground with friction",
     "held": "the recorded rotation of the wheels, held by strong motors on ground with friction",
     "currents": "the recorded currents, as torques",
     "voltages": "the recorded voltages",
@@ -39,6 +43,11 @@ class RolledPaths:
     skipped: list[str]
     inputs: str = "wheel-speeds"
 
+    @cached_property
+    def poor(self) -> list[str]:
+        """A sentence where the fit is poor."""
+        return words_of_poor(self.scene, self.logs, self.errors, self.inputs)
+
 
 def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs: str = "wheel-speeds") -> RolledPaths:
     """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
@@ -55,13 +64,14 @@ def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs
 
 def as_numbers(found: RolledPaths) -> dict[str, Any]:
     """For JSON."""
-    return {"runs": [each.as_json() for each in found.errors], "remarks": remarks_of(found.logs)}
+    return {"runs": [each.as_json() for each in found.errors], "remarks": [*found.poor, *remarks_of(found.logs)]}
 
 
 def as_text(found: RolledPaths) -> str:
     """A report in Markdown."""
     lines = [f"# {counted(len(found.logs), 'run')} beside {found.scene.name}", "",
              f"Inputs: {_said(found)}.", "", *error_table(found.errors)]
+    lines += ["", *(f"**{each}**" for each in found.poor)] if found.poor else []
     lines += remark_lines(found.logs)
     if found.skipped:
         lines += ["", f"Left out, no logs that the map recognises: {', '.join(dict.fromkeys(found.skipped))}."]
@@ -78,7 +88,7 @@ def _said(found: RolledPaths) -> str:
     if found.inputs != "wheel-speeds":
         return SAID[found.inputs]
     if found.scene.has_hinges:
-        return SAID["steered"]
+        return SAID["steered with friction" if slips(found.scene.vehicle) else "steered"]
     return SAID["held"] if slips(found.scene.vehicle) else SAID["wheel-speeds"]
 
 
