@@ -147,9 +147,10 @@ class Values:
         raise BadInput(f"frc: the robot program has no {wanted}; {nearest_of(wanted, self._known(), 'correct [frc]')}")
 
     def _known(self) -> list[str]:
-        found = list[str]()
-        self._sim.enumerateDevices("", lambda device, _: found.append(device))
-        return found
+        from wpilib.simulation import SimDeviceSim
+
+        return [f"{device}/{name}" for device in SimDeviceSim.enumerateDevices()
+                for name, _ in SimDeviceSim(device).enumerateValues()]
 
 
 class CanMotor:
