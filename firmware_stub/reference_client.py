@@ -72,7 +72,8 @@ class Client:
     def __init__(self, bus, dbc=DBC, base=BASE):
         self.bus, self.base, self.count, self.key, self.run_key, self.last = bus, base, Counter(), None, None, {}
         self.messages = {message.name: message for message in cantools.database.load_file(dbc).messages}
-        self.by_id = {message.frame_id - BASE + base: message for message in self.messages.values()}
+        self.by_id = {message.frame_id - BASE + base: message for message in self.messages.values()
+                      if "E2EDataID" in message.dbc.attributes}  # frames of XCP have no protection
 
     def frame(self, name, count, key=None, **signals):
         """A frame, ready to be sent; signals that are not named are 0."""

@@ -11,7 +11,7 @@ typedef struct memory_part {
 
 #define PART(member) {(uint32_t)offsetof(laconic_node, member), (uint32_t)sizeof(((laconic_node *)NULL)->member)}
 
-/* What only COMMIT writes. */
+/* What only COMMIT writes, and a master of XCP. */
 static const memory_part model_parts[] = {
     PART(start),
     PART(plant.vehicle),
@@ -31,6 +31,9 @@ static const memory_part model_parts[] = {
     PART(hinges.integrator),
     PART(hinges.start),
     PART(hinges.first),
+#endif
+#if LACONIC_NODE_WITH_XCP
+    PART(xcp.page),
 #endif
 };
 
@@ -321,15 +324,43 @@ static void hold(laconic_integrity *it, laconic_node *node) {
         it->broken = LACONIC_INTEGRITY_SOUND;
 }
 
+#if LACONIC_NODE_WITH_XCP
+#define XCP_LEAST_THAT_WRITES 0xE4U /* COPY_CAL_PAGE, SET_CAL_PAGE and DOWNLOAD are among the codes from it on … */
+#define XCP_MOST_THAT_WRITES 0xF0U  /* … to this one                                                        */
+
+static bool may_calibrate(const laconic_integrity *it, const laconic_node *node, const laconic_frame *frame) {
+    return it->has_vehicle && it->broken != LACONIC_INTEGRITY_OF_MODEL && (it->checks & LACONIC_INTEGRITY_SUM) != 0 &&
+           !frame->extended && frame->id - node->config.id_base == LACONIC_WIRE_XCP_COMMAND &&
+           frame->data[0] >= XCP_LEAST_THAT_WRITES && frame->data[0] <= XCP_MOST_THAT_WRITES;
+}
+
+/* A new sum must not cover a change that the present round has not come to. */
+static void look_at_model(laconic_integrity *it, laconic_node *node) {
+    if (!same(it->model, sum_of_model(node))) fail(it, node, LACONIC_INTEGRITY_OF_MODEL);
+}
+
+static void renew_model(laconic_integrity *it, const laconic_node *node) {
+    it->model = sum_of_model(node);
+    begin_round(it);
+}
+#endif
+
 void laconic_integrity_on_frame(laconic_integrity *integrity, laconic_node *node, const laconic_frame *frame,
                                 uint32_t now_us) {
     look(integrity, node, now_us);
     const bool loading = (integrity->checks & LACONIC_INTEGRITY_MOTION) != 0 && is_loading(node, frame);
     const uint32_t commits = node->session.count[LACONIC_WIRE_COMMIT];
     if (loading) look_at_loaded(integrity, node);
+#if LACONIC_NODE_WITH_XCP
+    const bool calibrating = may_calibrate(integrity, node, frame);
+    if (calibrating) look_at_model(integrity, node);
+#endif
     node->model_is_wrong = integrity->broken == LACONIC_INTEGRITY_OF_MODEL;
     laconic_node_on_frame(node, frame, now_us);
     if (loading) integrity->loaded = sum_of_loaded(node);
+#if LACONIC_NODE_WITH_XCP
+    if (calibrating && integrity->broken != LACONIC_INTEGRITY_OF_MODEL) renew_model(integrity, node);
+#endif
     if (node->session.count[LACONIC_WIRE_COMMIT] > commits && node->answer[LACONIC_WIRE_COMMIT].status == 0) {
         integrity->has_vehicle = true;
         integrity->broken = LACONIC_INTEGRITY_SOUND;

@@ -65,6 +65,18 @@ static const location *find(uint8_t field, uint8_t item) {
     return NULL;
 }
 
+#if LACONIC_NODE_WITH_XCP
+bool laconic_loader_find(laconic_loader_place *place, uint8_t field, uint8_t k) {
+    const location *where = find(field, k);
+    if (where == NULL || where->items > 0) where = find(field, (uint8_t)(k + 1U));
+    if (where == NULL || where->offset >= sizeof(laconic_vehicle)) return false;
+    place->stride = where->items > 0 ? where->stride : 0U;
+    place->offset = (uint16_t)(where->offset + place->stride * k);
+    place->kind = where->kind_and_need & 15U;
+    return true;
+}
+#endif
+
 /* Fields of laconic.dbc that are not in the table: of a motor, which the rig fits, and what this build leaves out. */
 static bool is_left_out(uint8_t field) {
     const bool of_slope = field == LACONIC_FIELD_SLOPE || field == LACONIC_FIELD_SLOPE_HEADING;
@@ -115,18 +127,25 @@ static void store_real(laconic_loader *loader, void *to, const struct laconic_db
     if (assemble(loader, frame, &value)) memcpy(to, &value, sizeof value);
 }
 
+/* An enumeration may be as short as one signed byte. */
+#define LARGEST_OF_ENUMERATION 127U
+#if LACONIC_NODE_WITH_HINGES
+#define IS_HINGE_KIND(field) ((field) == LACONIC_FIELD_OF_BODY_HINGE)
+#else
+#define IS_HINGE_KIND(field) false
+#endif
+
 static void store_integer(laconic_loader *loader, void *to, uint8_t kind, const struct laconic_dbc_parameter_t *frame) {
     const int32_t number = (int32_t)frame->value;
     const bool flag = (frame->value != 0) != (kind == LACONIC_KIND_ABSENCE);
-#if LACONIC_NODE_WITH_HINGES
-    if (frame->field == LACONIC_FIELD_OF_BODY_HINGE && !frame->upper_half && frame->value <= 127U) {
-        *(laconic_hinge_kind *)to = (laconic_hinge_kind)frame->value; /* an enumeration, which may be short */
-        return;
-    }
-#endif
-    const uint32_t largest = kind == LACONIC_KIND_WHEEL_KIND ? 127U : kind == LACONIC_KIND_INTEGER ? UINT32_MAX : 1U;
+    const bool enumeration = kind == LACONIC_KIND_WHEEL_KIND || IS_HINGE_KIND(frame->field);
+    const uint32_t largest = enumeration ? LARGEST_OF_ENUMERATION : kind == LACONIC_KIND_INTEGER ? UINT32_MAX : 1U;
     if (frame->upper_half || frame->value > largest) {
         refuse(loader, LACONIC_WIRE_STATUS_OUT_OF_RANGE, frame->field, frame->item);
+#if LACONIC_NODE_WITH_HINGES
+    } else if (IS_HINGE_KIND(frame->field)) {
+        *(laconic_hinge_kind *)to = (laconic_hinge_kind)frame->value;
+#endif
     } else if (kind == LACONIC_KIND_INTEGER) {
         memcpy(to, &number, sizeof number);
     } else if (kind == LACONIC_KIND_WHEEL_KIND) {

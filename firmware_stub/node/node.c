@@ -83,6 +83,12 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
 #endif
         return;
     }
+#if LACONIC_NODE_WITH_XCP
+    if (offset == LACONIC_WIRE_XCP_COMMAND) {
+        laconic_xcp_on_frame(node, frame);
+        return;
+    }
+#endif
     if (!LACONIC_WIRE_FROM_RIG(offset) || !is_well_formed(frame, &laconic_wire[offset])) {
         count(&node->counters.malformed);
         return;
@@ -161,6 +167,9 @@ static bool frame_of_drives(laconic_node *node, laconic_frame *frame) {
 
 bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
     uint8_t offset = LACONIC_WIRE_RESULT;
+#if LACONIC_NODE_WITH_XCP
+    if (node->pending == 0 && laconic_xcp_next_frame(node, frame)) return true;
+#endif
     if (node->pending == 0) return frame_of_drives(node, frame);
     while ((node->pending & BIT_OF(offset)) == 0) offset++;
     const laconic_wire_row *row = &laconic_wire[offset];
@@ -177,6 +186,9 @@ bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
 }
 
 bool laconic_node_is_busy(const laconic_node *node) {
+#if LACONIC_NODE_WITH_XCP
+    if (laconic_daq_steps(node, 1) == 0) return false;
+#endif
     return !LACONIC_NODE_DRIVES_ONLY && node->lockstep.steps_due > 0;
 }
 

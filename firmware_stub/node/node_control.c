@@ -87,9 +87,7 @@ void laconic_node_make_idle(laconic_node *node) {
     if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = 0;
     node->raw_output.send = 0;
 #if LACONIC_NODE_WITH_HINGES
-    node->hinges.send = 0;
-    node->raw_output.send_hinges = 0;
-    node->raw_input.take_hinges = 0;
+    laconic_node_deselect_hinges(node);
 #endif
 #if LACONIC_NODE_WITH_ESTIMATE
     node->estimates = false;
@@ -156,13 +154,31 @@ laconic_node_result laconic_node_parameter(laconic_node *node, const uint8_t *da
     return answer;
 }
 
+/* A vehicle that was loaded waits for START, with no inputs. */
+static uint8_t take_loaded(laconic_node *node) {
+    node->start = node->loader.parameters.start;
+#if LACONIC_NODE_WITH_DRIVES
+    node->drive_plan = node->loader.parameters.drives;
+#endif
+#if LACONIC_NODE_WITH_XCP
+    laconic_xcp_adopt(node, &node->loader.parameters.vehicle);
+#endif
+    node->model_is_wrong = false;
+    node->state = LACONIC_WIRE_STATE_READY;
+    laconic_node_clear_inputs(node);
+    return 0;
+}
+
 /* The loaded parameters become the vehicle, or nothing changes. */
 static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     const laconic_parameters *new = &node->loader.parameters;
     const laconic_method *method = node->config.method(new->method);
     laconic_refusal why = {0};
 #if LACONIC_NODE_WITH_HINGES
-    if (new->bodies.body_count != 0) return laconic_node_adopt_hinges(node, field, item);
+    if (new->bodies.body_count != 0) {
+        const uint8_t of_hinges = laconic_node_adopt_hinges(node, field, item);
+        return of_hinges != 0 ? of_hinges : take_loaded(node);
+    }
 #endif
     if (method == NULL) {
         *field = LACONIC_FIELD_METHOD;
@@ -187,17 +203,10 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
 #if LACONIC_NODE_WITH_SENSORS
     laconic_node_start_sensors(node, &new->sensors);
 #endif
-#if LACONIC_NODE_WITH_DRIVES
-    node->drive_plan = new->drives;
-#endif
 #if LACONIC_NODE_WITH_HINGES
     laconic_node_drop_hinges(node);
 #endif
-    node->start = new->start;
-    node->model_is_wrong = false;
-    node->state = LACONIC_WIRE_STATE_READY;
-    laconic_node_clear_inputs(node);
-    return 0;
+    return take_loaded(node);
 }
 
 laconic_node_result laconic_node_commit(laconic_node *node, const uint8_t *data) {

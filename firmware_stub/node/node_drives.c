@@ -91,10 +91,14 @@ static bool is_read(const laconic_node *node) {
 void laconic_node_run_drives(laconic_node *node, uint32_t now_us) {
     laconic_refusal why = {0};
     if (!is_read(node) || !laconic_node_period_is_due(node, now_us)) return;
-    if (step(node, now_us, &why) != LACONIC_OK)
+    if (step(node, now_us, &why) != LACONIC_OK) {
         laconic_node_fail(node, &why, 0);
-    else
-        laconic_node_end_period(node);
+        return;
+    }
+#if LACONIC_NODE_WITH_XCP
+    laconic_daq_event(node);
+#endif
+    laconic_node_end_period(node);
 }
 
 uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data) {

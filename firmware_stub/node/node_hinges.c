@@ -87,16 +87,9 @@ static void adopt(laconic_node *node, const laconic_node_hinges *found) {
 #endif
     node->pending &= ~PENDING_NOT_OF_HINGES;
     count_in_plant(node);
-    node->start = node->loader.parameters.start;
-#if LACONIC_NODE_WITH_DRIVES
-    node->drive_plan = node->loader.parameters.drives;
-#endif
 #if LACONIC_NODE_WITH_ESTIMATE
     node->estimates = false;
 #endif
-    node->model_is_wrong = false;
-    node->state = LACONIC_WIRE_STATE_READY;
-    laconic_node_clear_inputs(node);
 }
 
 uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *item) {
@@ -118,11 +111,15 @@ uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *i
     return 0;
 }
 
-void laconic_node_drop_hinges(laconic_node *node) {
-    node->hinges.here = false;
+void laconic_node_deselect_hinges(laconic_node *node) {
     node->hinges.send = 0;
     node->raw_output.send_hinges = 0;
     node->raw_input.take_hinges = 0;
+}
+
+void laconic_node_drop_hinges(laconic_node *node) {
+    node->hinges.here = false;
+    laconic_node_deselect_hinges(node);
     node->raw_input.hinge_count = 0;
     node->pending &= ~PENDING_OF_HINGES;
 }
@@ -244,40 +241,40 @@ bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t 
 
 /* --------------------------------------------------------------------------------------- steps -- */
 
-/* One step along both inputs, after which those of its end act. */
-static laconic_status step_between(laconic_node *node, laconic_refusal *why) {
+static laconic_status step_along(laconic_node *node, const laconic_articulated_input *from,
+                                 const laconic_articulated_input *to, laconic_refusal *why) {
     laconic_node_hinges *hinges = &node->hinges;
-    laconic_articulated_input *input = hinges->input;
-    laconic_articulated_ramp(&input[0], &input[1], hinges->integrator.step_s);
     const laconic_status status =
-        laconic_articulated_step(&hinges->model, &hinges->integrator, &hinges->state, &input[0], &input[1], why);
+        laconic_articulated_step(&hinges->model, &hinges->integrator, &hinges->state, from, to, why);
     if (status != LACONIC_OK) return status;
-    hold(&input[1]);
-    input[0] = input[1];
-    hinges->changes = false;
-    memcpy(hinges->twist, input[1].twist, sizeof hinges->twist);
+    memcpy(hinges->twist, to->twist, sizeof hinges->twist);
     node->plant.steps++;
     return status;
 }
 
-static laconic_status step_held(laconic_node *node, laconic_refusal *why) {
-    laconic_node_hinges *hinges = &node->hinges;
-    const laconic_articulated_input *input = &hinges->input[0];
-    const laconic_status status =
-        laconic_articulated_step(&hinges->model, &hinges->integrator, &hinges->state, input, input, why);
+/* One step along both inputs, after which those of its end act. */
+static laconic_status step_between(laconic_node *node, laconic_refusal *why) {
+    laconic_articulated_input *input = node->hinges.input;
+    laconic_articulated_ramp(&input[0], &input[1], node->hinges.integrator.step_s);
+    const laconic_status status = step_along(node, &input[0], &input[1], why);
     if (status != LACONIC_OK) return status;
-    hinges->input[1] = hinges->input[0];
-    memcpy(hinges->twist, input->twist, sizeof hinges->twist);
-    node->plant.steps++;
+    hold(&input[1]);
+    input[0] = input[1];
+    node->hinges.changes = false;
     return status;
 }
 
 laconic_status laconic_node_step_hinges(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+    laconic_articulated_input *input = node->hinges.input;
     laconic_status status = LACONIC_OK;
-    for (; steps > 0 && status == LACONIC_OK; steps--) {
-        for (int k = 0; k < 2; k++) node->hinges.input[k].base = node->input[0];
-        status = node->hinges.changes ? step_between(node, why) : step_held(node, why);
+    for (int k = 0; k < 2; k++) input[k].base = node->input[0];
+    if (!node->hinges.changes) {
+        input[1] = input[0];
+    } else if (steps > 0) {
+        status = step_between(node, why);
+        steps--;
     }
+    for (; steps > 0 && status == LACONIC_OK; steps--) status = step_along(node, &input[0], &input[0], why);
     return status;
 }
 

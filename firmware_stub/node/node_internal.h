@@ -189,6 +189,7 @@ laconic_status laconic_node_restart_hinges(laconic_node *node, laconic_refusal *
 /* SELECT: whether the present vehicle has all that it chooses; the bits of hinges. */
 bool laconic_node_may_select_hinges(const laconic_node *node, const uint8_t *data);
 void laconic_node_select_hinges(laconic_node *node, const uint8_t *data);
+void laconic_node_deselect_hinges(laconic_node *node);
 void laconic_node_publish_hinges(laconic_node *node);
 void laconic_node_clear_hinge_inputs(laconic_node *node);
 /* Three numbers of STEERING; false iff they are not for this vehicle. */
@@ -213,6 +214,69 @@ static inline void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], con
 static inline void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node) {
     laconic_plant_wheel_angles(&node->plant, angle_rad);
 }
+#endif
+
+#if LACONIC_NODE_WITH_XCP
+/* Errors of XCP; DONE: none. */
+enum {
+    XCP_SYNCH = 0x00,
+    XCP_DAQ_ACTIVE = 0x11,
+    XCP_COMMAND_UNKNOWN = 0x20,
+    XCP_SYNTAX = 0x21,
+    XCP_OUT_OF_RANGE = 0x22,
+    XCP_WRITE_PROTECTED = 0x23,
+    XCP_ACCESS_DENIED = 0x24,
+    XCP_PAGE_NOT_VALID = 0x26,
+    XCP_MODE_NOT_VALID = 0x27,
+    XCP_SEGMENT_NOT_VALID = 0x28,
+    XCP_SEQUENCE = 0x29,
+    XCP_DAQ_CONFIG = 0x2A,
+    XCP_MEMORY_OVERFLOW = 0x30,
+    XCP_NOT_NOW = 0x33,
+    XCP_DONE = 0xFF
+};
+
+/* node_xcp.c: a master's session and commands. */
+void laconic_xcp_on_frame(laconic_node *node, const laconic_frame *frame);
+bool laconic_xcp_next_frame(laconic_node *node, laconic_frame *frame);
+
+/* node_xcp_memory.c: the numbers that a master sees, and the pages of its calibration. Each returns an error of XCP;
+ * commands are those of the protocol, whose answers begin with their code. */
+extern const char laconic_xcp_texts[1U + LACONIC_XCP_EVENTS][LACONIC_XCP_TEXT_BYTES];
+/* After COMMIT: both pages are this vehicle. */
+void laconic_xcp_adopt(laconic_node *node, const laconic_vehicle *vehicle);
+uint8_t laconic_xcp_read(laconic_node *node, uint32_t address, uint8_t *to, uint32_t count);
+/* At the master's address, all bytes or none. */
+uint8_t laconic_xcp_write(laconic_node *node, const uint8_t *from, uint8_t count);
+uint8_t laconic_xcp_set_page(laconic_node *node, const uint8_t *command);
+uint8_t laconic_xcp_get_page(laconic_xcp *xcp, const uint8_t *command);
+uint8_t laconic_xcp_copy_page(laconic_node *node, const uint8_t *command);
+
+/* Commands of measurement. */
+enum {
+    LACONIC_DAQ_SET_POINTER = 0xE2,
+    LACONIC_DAQ_WRITE = 0xE1,
+    LACONIC_DAQ_SET_MODE = 0xE0,
+    LACONIC_DAQ_START_LIST = 0xDE,
+    LACONIC_DAQ_START_SELECTED = 0xDD,
+    LACONIC_DAQ_CLOCK = 0xDC,
+    LACONIC_DAQ_PROCESSOR = 0xDA,
+    LACONIC_DAQ_RESOLUTION = 0xD9,
+    LACONIC_DAQ_EVENT_INFO = 0xD7,
+    LACONIC_DAQ_FREE = 0xD6,
+    LACONIC_DAQ_ALLOC = 0xD5,
+    LACONIC_DAQ_ALLOC_ODT = 0xD4,
+    LACONIC_DAQ_ALLOC_ENTRY = 0xD3
+};
+
+/* node_daq.c: lists of measurements. A command's answer begins with its code; returns an error of XCP. */
+uint8_t laconic_daq_command(laconic_node *node, const uint8_t *command);
+void laconic_daq_clear(laconic_xcp *xcp);
+bool laconic_daq_runs(const laconic_xcp *xcp);
+/* How many of these steps may be taken before the next event; 0: what was measured must be sent first. */
+uint32_t laconic_daq_steps(const laconic_node *node, uint32_t steps);
+/* After a step: samples what is due. */
+void laconic_daq_event(laconic_node *node);
 #endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */

@@ -102,12 +102,19 @@ void laconic_node_run_lockstep(laconic_node *node) {
     uint32_t steps = node->lockstep.steps_due;
     if (steps == 0) return;
     if (steps > LACONIC_NODE_STEPS_PER_TICK) steps = LACONIC_NODE_STEPS_PER_TICK;
+#if LACONIC_NODE_WITH_XCP
+    steps = laconic_daq_steps(node, steps);
+    if (steps == 0) return;
+#endif
     const bool sampled = (node->raw_input.take & LACONIC_RAW_SAMPLED) != 0; /* SYNC lets pass one step of these alone */
     const laconic_status status = sampled ? step_sampled(node, &why) : step(node, steps, &why);
     if (status != LACONIC_OK) {
         laconic_node_fail(node, &why, node->lockstep.request);
         return;
     }
+#if LACONIC_NODE_WITH_XCP
+    laconic_daq_event(node);
+#endif
     node->lockstep.steps_due -= steps;
     if (node->lockstep.steps_due == 0) laconic_node_publish(node);
 }
@@ -153,11 +160,25 @@ void laconic_node_end_period(laconic_node *node) {
     laconic_node_publish(node);
 }
 
+/* All steps of a period, one by one while a master of XCP measures. */
+static laconic_status step_period(laconic_node *node, laconic_refusal *why) {
+    uint32_t left = node->free_run.steps_per_period;
+#if LACONIC_NODE_WITH_XCP
+    for (; left > 0 && laconic_daq_runs(&node->xcp); left--) {
+        const laconic_status status = step(node, 1, why);
+        if (status != LACONIC_OK) return status;
+        laconic_daq_event(node);
+    }
+    if (left == 0) return LACONIC_OK;
+#endif
+    return step(node, left, why);
+}
+
 void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
     laconic_refusal why = {0};
     watch(node, now_us);
     if (!laconic_node_period_is_due(node, now_us)) return;
-    const laconic_status status = step(node, node->free_run.steps_per_period, &why);
+    const laconic_status status = step_period(node, &why);
     if (status != LACONIC_OK)
         laconic_node_fail(node, &why, 0);
     else

@@ -138,6 +138,18 @@ static laconic_real *collect_sensors(laconic_real *to, uint8_t send, int32_t whe
     return to;
 }
 
+static laconic_real *copied(laconic_real *to, const laconic_real *numbers, int32_t count) {
+    for (int32_t i = 0; i < count; i++) *to++ = numbers[i];
+    return to;
+}
+
+/* The numbers before `to` are sent from now on. */
+static void begin_output(laconic_raw_output *raw, const laconic_real *to) {
+    raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
+    raw->position = 0;
+    raw->segment = 0;
+}
+
 void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_input *held,
                          const laconic_sensor_outputs *sensed) {
     laconic_real *to = raw->number;
@@ -158,20 +170,12 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
     if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
     if (raw->send >= LACONIC_RAW_IMU) { /* one of the last three, which few choose */
         if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
-        if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
-            for (int32_t i = 0; i < n; i++) *to++ = held->axle_torque_Nm[i];
+        if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE) to = copied(to, held->axle_torque_Nm, n);
     }
-    raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
-    raw->position = 0;
-    raw->segment = 0;
+    begin_output(raw, to);
 }
 
 #if LACONIC_NODE_WITH_HINGES
-static laconic_real *copied(laconic_real *to, const laconic_real *numbers, int32_t count) {
-    for (int32_t i = 0; i < count; i++) *to++ = numbers[i];
-    return to;
-}
-
 /* Outputs that every vehicle has, in the order of all others. */
 static laconic_real *collect_motion(laconic_real *to, uint8_t send, const laconic_articulated_motion *motion,
                                     int32_t wheel_count) {
@@ -199,9 +203,7 @@ void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulat
     }
     if (raw->send_hinges & LACONIC_RAW_HINGE_ANGLE) to = copied(to, motion.hinge_angle_rad, model->body_count);
     if (raw->send_hinges & LACONIC_RAW_HINGE_RATE) to = copied(to, motion.hinge_rate_rad_per_s, model->body_count);
-    raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
-    raw->position = 0;
-    raw->segment = 0;
+    begin_output(raw, to);
 }
 #endif
 

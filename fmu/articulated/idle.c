@@ -1,11 +1,8 @@
 /* Logs, once a run for each kind, an input that this vehicle does not read. */
+#include "core_words.h"
 #include "parts.h"
 
-typedef struct idle_input {
-    const char *name, *unit, *needs;
-} idle_input;
-
-static const idle_input idle_inputs[] = {
+static const fmu_idle_input idle_inputs[] = {
     {"voltage_V", "V", "this wheel has no motor (wheel_undriven, or a motor gain of 0)"},
     {"hinge_voltage_V", "V", "this hinge has no motor (body_hinge, hinge_gain_Nm_per_V)"},
     {"hinge_torque_Nm", "N m", "this hinge is commanded (body_hinge), whatever torque that takes"},
@@ -16,11 +13,7 @@ static const idle_input idle_inputs[] = {
 };
 
 static void warn(fmu_instance *instance, unsigned kind, int32_t element, double value) {
-    const idle_input *idle = &idle_inputs[kind];
-    if (value == 0.0 || instance->warnings_given >> kind & 1U) return;
-    instance->warnings_given |= 1U << kind;
-    (void)fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING, "%s[%d]: %.9g %s has no effect: %s; give 0 (logged once)",
-                  idle->name, (int)(element + 1), value, idle->unit, idle->needs);
+    fmu_warn_idle(instance, &idle_inputs[kind], kind, element, value);
 }
 
 static void check_hinge(fmu_instance *instance, int32_t b) {

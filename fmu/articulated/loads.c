@@ -1,5 +1,6 @@
 /* Normal loads of wheels and supports of a vehicle with hinges, by the core's statics of one rigid carriage after the
  * other: trailers first, each of which leaves a part of its weight to the body that it hangs on. */
+#include "core_words.h"
 #include "parts.h"
 
 #define BODIES (LACONIC_MAX_BODIES + 1)
@@ -31,7 +32,7 @@ static place point_of(const posture *p, int32_t body, double x_m, double y_m) {
 static void find_posture(posture *p, const fmu_model *self) {
     const laconic_articulated_vehicle *v = p->vehicle = &self->in_use;
     p->facing[0] = self->state.heading;
-    fmu_articulated_turn(p->axis[0], &p->facing[0], 1.0, 0.0);
+    fmu_turn(p->axis[0], &p->facing[0], 1.0, 0.0);
     p->origin[0] = point_of(p, 0, -self->prepared.com_x_m, -self->prepared.com_y_m);
     for (int32_t b = 1; b <= v->body_count; b++) {
         const laconic_body *body = &v->body[b - 1];
@@ -39,7 +40,7 @@ static void find_posture(posture *p, const fmu_model *self) {
         p->facing[b] = p->facing[body->parent];
         p->facing[b].fraction =
             (laconic_binary_angle)(p->facing[body->parent].fraction + self->state.hinge[b - 1].fraction);
-        fmu_articulated_turn(p->axis[b], &p->facing[b], 1.0, 0.0);
+        fmu_turn(p->axis[b], &p->facing[b], 1.0, 0.0);
         p->group[b] = self->hinge_is_ball[b - 1] ? b : p->group[body->parent];
     }
 }

@@ -58,7 +58,7 @@ static void carry_over(laconic_articulated_start *start, fmu_model *self, const 
     const laconic_articulated_motion *m = &self->motion;
     const double dx = fresh->com_x_m - self->prepared.com_x_m, dy = fresh->com_y_m - self->prepared.com_y_m;
     double moved[2];
-    fmu_articulated_turn(moved, &self->state.heading, dx, dy);
+    fmu_turn(moved, &self->state.heading, dx, dy);
     start->velocity_m_per_s[0] = m->velocity_m_per_s[0] - m->yaw_rate_rad_per_s * dy;
     start->velocity_m_per_s[1] = m->velocity_m_per_s[1] + m->yaw_rate_rad_per_s * dx;
     start->yaw_rate_rad_per_s = m->yaw_rate_rad_per_s;
@@ -162,7 +162,7 @@ static void refresh_origin(fmu_model *self) {
     const laconic_articulated_model *m = &self->prepared;
     const laconic_articulated_motion *motion = &self->motion;
     double from_origin[2];
-    fmu_articulated_turn(from_origin, &self->state.heading, m->com_x_m, m->com_y_m);
+    fmu_turn(from_origin, &self->state.heading, m->com_x_m, m->com_y_m);
     self->origin_m[0] = motion->x_m - from_origin[0];
     self->origin_m[1] = motion->y_m - from_origin[1];
     self->heading_wrapped_rad = laconic_angle_wrapped(motion->heading_rad);
@@ -188,7 +188,7 @@ static laconic_status refresh_rates(fmu_model *self, laconic_refusal *why) {
     double velocity[2];
     const laconic_status status = laconic_articulated_rates_of(&rates, m, &self->state, &self->input, why);
     if (status != LACONIC_OK) return status;
-    fmu_articulated_turn(velocity, &self->state.heading, motion->velocity_m_per_s[0], motion->velocity_m_per_s[1]);
+    fmu_turn(velocity, &self->state.heading, motion->velocity_m_per_s[0], motion->velocity_m_per_s[1]);
     self->rate.x_m = velocity[0];
     self->rate.y_m = velocity[1];
     self->rate.heading_rad = motion->yaw_rate_rad_per_s;

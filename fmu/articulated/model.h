@@ -9,6 +9,7 @@
 #error "LACONIC_MAX_BODIES is 0: this FMU needs the core with bodies on hinges"
 #endif
 
+#define FMU_MODEL_SLIPS 0 /* slipping/model.h is the other */
 #define FMU_MODEL_LARGEST_ARRAY LACONIC_MAX_WHEELS
 #define FMU_MODEL_OTHER_LARGEST_ARRAY LACONIC_MAX_BODIES
 #define FMU_MODEL_MOST_STATES (6 + 2 * LACONIC_MAX_BODIES + LACONIC_MAX_WHEELS)

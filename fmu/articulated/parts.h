@@ -4,9 +4,6 @@
 
 #include "model_interface.h"
 
-/* (x, y) turned by a heading. */
-void fmu_articulated_turn(double turned[2], const laconic_heading *heading, double x, double y);
-
 /* The core's state at the start values, or at the nearest motion where a fixed wheel would slide (not `allowed`).
  * Refuses as laconic_articulated_state_set. */
 laconic_status fmu_articulated_start(fmu_model *self, bool *allowed, laconic_refusal *why);

@@ -3,38 +3,6 @@
 #include "parts.h"
 #include "serialize_core.h"
 
-static void serialize_vehicle(fmu_stream *s, laconic_articulated_vehicle *v) {
-    laconic_vehicle *base = &v->base;
-    LACONIC_VEHICLE_FIELDS(SERIALIZE, *base)
-    LACONIC_PAYLOAD_FIELDS(SERIALIZE, base->payload)
-    LACONIC_GROUND_FIELDS(SERIALIZE, base->ground)
-    fmu_stream_i32(s, &base->wheel_count, 0, LACONIC_MAX_WHEELS);
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
-        LACONIC_WHEEL_FIELDS(SERIALIZE, base->wheel[i])
-        LACONIC_OWN_WHEEL_FIELDS(SERIALIZE_OWN, base->wheel[i])
-        serialize_integer(s, &v->wheel_body[i]);
-    }
-    serialize_integer(s, &base->support_count);
-    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
-        LACONIC_SUPPORT_FIELDS(SERIALIZE, base->support[i])
-    }
-    fmu_stream_i32(s, &v->body_count, 0, LACONIC_MAX_BODIES);
-    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) {
-        LACONIC_BODY_FIELDS(SERIALIZE, v->body[b])
-    }
-}
-
-static void serialize_start(fmu_stream *s, laconic_articulated_start *start) {
-    LACONIC_START_FIELDS(SERIALIZE, *start)
-    LACONIC_HINGE_START_FIELDS(SERIALIZE_ARRAY, *start)
-}
-
-static void serialize_input(fmu_stream *s, laconic_articulated_input *u) {
-    LACONIC_INPUT_ARRAY_FIELDS(SERIALIZE_ARRAY, u->base)
-    LACONIC_INPUT_FIELDS(SERIALIZE, u->base)
-    LACONIC_HINGE_INPUT_FIELDS(SERIALIZE_ARRAY, *u)
-}
-
 static void serialize_state(fmu_stream *s, laconic_articulated_state *state) {
     serialize_sums(s, state->eta, LACONIC_MAX_VELOCITIES);
     serialize_sums(s, &state->x_m, 1);
@@ -81,18 +49,18 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     fmu_stream_bool(stream, &model->continuous);
     fmu_stream_bool(stream, &model->jump_needed);
     fmu_stream_reals(stream, &model->time_s, 1);
-    serialize_vehicle(stream, &model->vehicle);
+    serialize_hinged_vehicle(stream, &model->vehicle);
     for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) fmu_stream_bool(stream, &model->hinge_is_ball[b]);
-    serialize_start(stream, &model->start);
+    serialize_hinged_start(stream, &model->start);
     serialize_integer(stream, &model->method);
     fmu_stream_reals(stream, &model->step_s, 1);
-    serialize_input(stream, &model->input);
-    serialize_input(stream, &model->slope);
+    serialize_hinged_input(stream, &model->input);
+    serialize_hinged_input(stream, &model->slope);
     serialize_stale(stream, model);
     fmu_stream_reals(stream, &model->at.x_m, sizeof model->at / sizeof(double));
-    serialize_vehicle(stream, &model->in_use);
+    serialize_hinged_vehicle(stream, &model->in_use);
     serialize_state(stream, &model->state);
-    serialize_input(stream, &model->commanded);
+    serialize_hinged_input(stream, &model->commanded);
     fmu_stream_reals(stream, &step_s, 1);
     prepare_again(stream, model, step_s);
     return !stream->failed;

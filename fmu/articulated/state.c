@@ -1,20 +1,9 @@
 /* The state of a vehicle with hinges: from start values, from the continuous states of Model Exchange, and back. */
+#include "core_words.h"
 #include "parts.h"
 
 /* Of the size of a start, what rounding may change of it. */
 #define ALLOWED_CHANGE 1e-9
-
-void fmu_articulated_turn(double turned[2], const laconic_heading *heading, double x, double y) {
-    laconic_model model = {0};
-    laconic_state state = {0};
-    laconic_pose pose;
-    model.com_x_m = -x;
-    model.com_y_m = -y;
-    state.heading = *heading;
-    laconic_pose_of(&pose, &model, &state);
-    turned[0] = pose.origin_x_m;
-    turned[1] = pose.origin_y_m;
-}
 
 /* ------------------------------------------------------------------------------------ starts -- */
 
@@ -24,7 +13,7 @@ static laconic_vector carried_to(const laconic_link *link, const laconic_heading
     laconic_vector at = {0.0, 0.0, parent.z};
     double turned[2];
     back.fraction = (laconic_binary_angle)(0U - hinge->fraction);
-    fmu_articulated_turn(turned, &back, parent.x - parent.z * link->hinge.y, parent.y + parent.z * link->hinge.x);
+    fmu_turn(turned, &back, parent.x - parent.z * link->hinge.y, parent.y + parent.z * link->hinge.x);
     at.x = turned[0];
     at.y = turned[1];
     return at;

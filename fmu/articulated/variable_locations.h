@@ -3,27 +3,33 @@
 #ifndef LACONIC_FMU_ARTICULATED_VARIABLE_LOCATIONS_H
 #define LACONIC_FMU_ARTICULATED_VARIABLE_LOCATIONS_H
 
+#include "instance.h" /* and by it model.h, of this model or of slipping/ */
 #include "location_macros.h"
-#include "model.h"
 
-#define IN_VEHICLE(member) FMU_PLAIN(vehicle.base.member)
-#define IN_PAYLOAD(member) FMU_PLAIN(vehicle.base.payload.member)
-#define IN_GROUND(member) FMU_PLAIN(vehicle.base.ground.member)
-#define IN_WHEEL(member) FMU_AT(vehicle.base.wheel[0].member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
+/* IN_MODEL(vehicle): where the core's struct of a vehicle with hinges is, in the larger one of a vehicle that slips. */
+#if FMU_MODEL_SLIPS
+#define IN_MODEL(part) part.hinged
+#else
+#define IN_MODEL(part) part
+#endif
+#define IN_VEHICLE(member) FMU_PLAIN(IN_MODEL(vehicle).base.member)
+#define IN_PAYLOAD(member) FMU_PLAIN(IN_MODEL(vehicle).base.payload.member)
+#define IN_GROUND(member) FMU_PLAIN(IN_MODEL(vehicle).base.ground.member)
+#define IN_WHEEL(member) FMU_AT(IN_MODEL(vehicle).base.wheel[0].member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
 #define IN_OWN(member) IN_WHEEL(own_##member)
-#define IN_SUPPORT(member) FMU_AT(vehicle.base.support[0].member), sizeof(laconic_support), 0, FMU_NO_TANGENT
+#define IN_SUPPORT(member) FMU_AT(IN_MODEL(vehicle).base.support[0].member), sizeof(laconic_support), 0, FMU_NO_TANGENT
 #define IN_COUNT(member) IN_COUNT_##member
-#define IN_COUNT_wheel FMU_PLAIN(vehicle.base.wheel_count)
-#define IN_COUNT_support FMU_PLAIN(vehicle.base.support_count)
-#define IN_BODY_COUNT(member) FMU_PLAIN(vehicle.body_count)
-#define IN_WHEEL_BODY(member) FMU_AT(vehicle.wheel_body), sizeof(int32_t), 0, FMU_NO_TANGENT
-#define IN_BODY(member) FMU_AT(vehicle.body[0].member), sizeof(laconic_body), 0, FMU_NO_TANGENT
-#define IN_START(member) FMU_PLAIN(start.member)
-#define IN_HINGE_START(member) FMU_AT(start.member), sizeof(double), 0, FMU_NO_TANGENT
+#define IN_COUNT_wheel FMU_PLAIN(IN_MODEL(vehicle).base.wheel_count)
+#define IN_COUNT_support FMU_PLAIN(IN_MODEL(vehicle).base.support_count)
+#define IN_BODY_COUNT(member) FMU_PLAIN(IN_MODEL(vehicle).body_count)
+#define IN_WHEEL_BODY(member) FMU_AT(IN_MODEL(vehicle).wheel_body), sizeof(int32_t), 0, FMU_NO_TANGENT
+#define IN_BODY(member) FMU_AT(IN_MODEL(vehicle).body[0].member), sizeof(laconic_body), 0, FMU_NO_TANGENT
+#define IN_START(member) FMU_PLAIN(IN_MODEL(start).member)
+#define IN_HINGE_START(member) FMU_AT(IN_MODEL(start).member), sizeof(double), 0, FMU_NO_TANGENT
 #define IN_RUN(member) FMU_PLAIN(member)
-#define IN_INPUT_ARRAY(member) FMU_MOVING(input.base.member, 0)
-#define IN_INPUT(member) FMU_MOVING(input.base.member, 0)
-#define IN_HINGE(member) FMU_MOVING(input.member, 0)
+#define IN_INPUT_ARRAY(member) FMU_MOVING(IN_MODEL(input).base.member, 0)
+#define IN_INPUT(member) FMU_MOVING(IN_MODEL(input).base.member, 0)
+#define IN_HINGE(member) FMU_MOVING(IN_MODEL(input).member, 0)
 #define FIELD(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) FMU_LOCATION(name, IN_##of(member))
 #define OUTPUT(name, member, group) FMU_LOCATION(name, FMU_AT(member), sizeof(double), group, FMU_NO_TANGENT)
 #define STATE(name, member) \
@@ -44,14 +50,16 @@ enum fmu_locations {
     LACONIC_BODY_COUNT_FIELD(FIELD, BODY_COUNT)
     LACONIC_WHEEL_BODY_FIELD(FIELD, WHEEL_BODY)
     LACONIC_BODY_FIELDS(FIELD, BODY)
-    FMU_LOCATION(hinge_is_ball, FMU_AT(hinge_is_ball), sizeof(bool), 0, FMU_NO_TANGENT)
     LACONIC_START_FIELDS(FIELD, START)
     LACONIC_HINGE_START_FIELDS(FIELD, HINGE_START)
-    LACONIC_RUN_FIELDS(FIELD, RUN)
     LACONIC_INPUT_ARRAY_FIELDS(FIELD, INPUT_ARRAY)
     LACONIC_INPUT_FIELDS(FIELD, INPUT)
     LACONIC_HINGE_INPUT_FIELDS(FIELD, HINGE)
-
+#if FMU_MODEL_SLIPS
+    SLIPPING_LOCATIONS /* model.h */
+#else
+    LACONIC_RUN_FIELDS(FIELD, RUN)
+    FMU_LOCATION(hinge_is_ball, FMU_AT(hinge_is_ball), sizeof(bool), 0, FMU_NO_TANGENT)
     STATE(x_m, x_m)
     STATE(y_m, y_m)
     STATE(heading_rad, heading_rad)
@@ -81,6 +89,7 @@ enum fmu_locations {
     OUTPUT(wheel_load_N, wheel_load_N, FMU_GROUP_GROUND)
     OUTPUT(support_load_N, support_load_N, FMU_GROUP_GROUND)
     OUTPUT(no_slip_margin_N, ground.no_slip_margin_N, FMU_GROUP_GROUND)
+#endif
 };
 /* clang-format on */
 

@@ -66,8 +66,8 @@ static bool has_name_and_token(const fmu_instance *instance, const fmu_request *
 }
 
 static bool offers_kind(const fmu_instance *instance) {
-    if (FMU_MODEL_PORTS == 0 || instance->kind == FMU_CO_SIMULATION) return true;
-    fmu_refuse(instance, "this FMU offers no Model Exchange");
+    if (FMU_MODEL_OFFERS_EXCHANGE || instance->kind == FMU_CO_SIMULATION) return true;
+    fmu_refuse(instance, "this FMU offers no Model Exchange; use Co-Simulation");
     return false;
 }
 

@@ -3,7 +3,8 @@
  * `change_needed`, `states_changed`, `time_s` and `stale` (bits of the groups that must be computed before they are
  * read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY, FMU_MODEL_MOST_STATES,
  * FMU_MODEL_HAS_OPTIONAL_STATES, FMU_MODEL_TAKES_SLOPES and FMU_MODEL_PORTS. Where FMU_MODEL_PORTS is not 0 it has bus
- * terminals (network/network_port.h), is for Co-Simulation only, and takes its steps by network/step.c. */
+ * terminals (network/network_port.h), is for Co-Simulation only, and takes its steps by network/step.c. Others offer
+ * Model Exchange unless FMU_MODEL_OFFERS_EXCHANGE is 0. */
 #ifndef LACONIC_FMU_MODEL_INTERFACE_H
 #define LACONIC_FMU_MODEL_INTERFACE_H
 
@@ -78,6 +79,10 @@ void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent);
 /* Sets du/dt of one input in the next communication step (FMI 2); `tangent_offset` is that of the input in
  * fmu_tangent. */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope);
+
+#ifndef FMU_MODEL_OFFERS_EXCHANGE
+#define FMU_MODEL_OFFERS_EXCHANGE (FMU_MODEL_PORTS == 0)
+#endif
 
 #ifndef FMU_MODEL_KEEPS_STEPS
 #define FMU_MODEL_KEEPS_STEPS 0

@@ -1,4 +1,5 @@
-/* Refusals of the core in the log of an FMU, and how many internal steps a communication step has. */
+/* Refusals of the core and idle inputs in the log of an FMU; directions; how many internal steps a communication step
+ * has. */
 #include "core_words.h"
 
 #include <stdio.h>
@@ -28,6 +29,25 @@ fmu_status fmu_discard_with(const fmu_instance *instance, const laconic_refusal 
     explain(text, sizeof text, why);
     return fmu_log(instance, FMU_DISCARD, FMU_LOG_DISCARD, "the step at %.15g s is refused: %s",
                    fmu_clock_now(&instance->clock), text);
+}
+
+void fmu_warn_idle(fmu_instance *instance, const fmu_idle_input *idle, unsigned kind, int32_t element, double value) {
+    if (value == 0.0 || instance->warnings_given >> kind & 1U) return;
+    instance->warnings_given |= 1U << kind;
+    (void)fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING, "%s[%d]: %.9g %s has no effect: %s; give 0 (logged once)",
+                  idle->name, (int)(element + 1), value, idle->unit, idle->needs);
+}
+
+void fmu_turn(double turned[2], const laconic_heading *heading, double x, double y) {
+    laconic_model model = {0};
+    laconic_state state = {0};
+    laconic_pose pose;
+    model.com_x_m = -x;
+    model.com_y_m = -y;
+    state.heading = *heading;
+    laconic_pose_of(&pose, &model, &state);
+    turned[0] = pose.origin_x_m;
+    turned[1] = pose.origin_y_m;
 }
 
 /* The whole number of internal steps nearest to step_s that does not pass the stop time, in seconds; 0: there is

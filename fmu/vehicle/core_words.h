@@ -1,4 +1,4 @@
-/* Refusals of the core in the log of an FMU, and how many internal steps a communication step has. */
+/* What models of vehicles share: refusals of the core and idle inputs in the log, and directions. */
 #ifndef LACONIC_FMU_CORE_WORDS_H
 #define LACONIC_FMU_CORE_WORDS_H
 
@@ -10,5 +10,17 @@ fmu_status fmu_refuse_with(const fmu_instance *instance, const laconic_refusal *
 
 /* The same of a step, with its time. Discard. */
 fmu_status fmu_discard_with(const fmu_instance *instance, const laconic_refusal *why);
+
+/* An input that some vehicles do not read: its variable, its unit, and what the vehicle lacks. */
+typedef struct fmu_idle_input {
+    const char *name, *unit, *needs;
+} fmu_idle_input;
+
+/* Logs that element `element`, from 0, of an input has no effect, unless it is 0; once a run for each `kind`, below
+ * 32. */
+void fmu_warn_idle(fmu_instance *instance, const fmu_idle_input *idle, unsigned kind, int32_t element, double value);
+
+/* (x, y) turned by a heading. */
+void fmu_turn(double turned[2], const laconic_heading *heading, double x, double y);
 
 #endif

@@ -42,4 +42,40 @@ static inline void serialize_heading(fmu_stream *s, laconic_heading *heading) {
     if (s->from != NULL && !(heading->rest <= 1.0 && heading->rest >= -1.0)) s->failed = true;
 }
 
+#ifdef LACONIC_ARTICULATED_H /* of models that include it: vehicles with hinges */
+
+static inline void serialize_hinged_vehicle(fmu_stream *s, laconic_articulated_vehicle *v) {
+    laconic_vehicle *base = &v->base;
+    LACONIC_VEHICLE_FIELDS(SERIALIZE, *base)
+    LACONIC_PAYLOAD_FIELDS(SERIALIZE, base->payload)
+    LACONIC_GROUND_FIELDS(SERIALIZE, base->ground)
+    fmu_stream_i32(s, &base->wheel_count, 0, LACONIC_MAX_WHEELS);
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        LACONIC_WHEEL_FIELDS(SERIALIZE, base->wheel[i])
+        LACONIC_OWN_WHEEL_FIELDS(SERIALIZE_OWN, base->wheel[i])
+        serialize_integer(s, &v->wheel_body[i]);
+    }
+    serialize_integer(s, &base->support_count);
+    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
+        LACONIC_SUPPORT_FIELDS(SERIALIZE, base->support[i])
+    }
+    fmu_stream_i32(s, &v->body_count, 0, LACONIC_MAX_BODIES);
+    for (int32_t b = 0; b < LACONIC_MAX_BODIES; b++) {
+        LACONIC_BODY_FIELDS(SERIALIZE, v->body[b])
+    }
+}
+
+static inline void serialize_hinged_start(fmu_stream *s, laconic_articulated_start *start) {
+    LACONIC_START_FIELDS(SERIALIZE, *start)
+    LACONIC_HINGE_START_FIELDS(SERIALIZE_ARRAY, *start)
+}
+
+static inline void serialize_hinged_input(fmu_stream *s, laconic_articulated_input *u) {
+    LACONIC_INPUT_ARRAY_FIELDS(SERIALIZE_ARRAY, u->base)
+    LACONIC_INPUT_FIELDS(SERIALIZE, u->base)
+    LACONIC_HINGE_INPUT_FIELDS(SERIALIZE_ARRAY, *u)
+}
+
+#endif
+
 #endif

@@ -16,6 +16,7 @@ from .method_list import differing_item, methods_in, with_items
 from .names import with_own_names
 from .of_step import of_step
 from .package import pack
+from .slipping import of_slipping, without_slip
 from .tables import tables
 
 
@@ -31,6 +32,7 @@ def make_tables(arguments: argparse.Namespace) -> None:
             sys.exit(fault)
     if arguments.methods and (fault := differing_item(arguments.methods, arguments.description, description)):
         sys.exit(fault)
+    description = of_slipping(description) if arguments.slipping else without_slip(description)
     description = with_estimate(description) if arguments.estimate else without_estimate(description)
     generic = for_vehicle(description)
     if arguments.of_step:
@@ -104,6 +106,7 @@ def main() -> None:
                          help="the header with the core's list of methods, each of which must be an item")
     command.add_argument("--of-step", action="store_true", help="derivatives of communication steps")
     command.add_argument("--estimate", action="store_true", help="with an error estimate")
+    command.add_argument("--slipping", action="store_true", help="of a vehicle with hinges on ground with friction")
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")
     command.add_argument("--version", type=int, choices=(2, 3), required=True)

@@ -15,6 +15,7 @@ from .for_vehicle import for_vehicle
 from .of_step import of_step
 from .package import pack, start_file
 from .scalars import elements_of
+from .slipping import of_slipping
 
 MOST_ROWS = 1000
 """Rows that an importer writes if it uses the default experiment unchanged."""
@@ -89,6 +90,8 @@ class Variant:
     sources: bool = True
     derivatives: bool = False
     """Those of the last communication step: of a generic FMU that has them."""
+    slipping: bool = False
+    """Of a vehicle with hinges on ground with friction."""
 
 
 @dataclass(frozen=True)
@@ -134,6 +137,7 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
     parts = {name: data for name, data in read_parts(generic).items()
              if variant.sources or not name.startswith("sources/")}
     given = parse(source.read_text(encoding="utf-8"))
+    given = of_slipping(given) if variant.slipping else given
     description = for_vehicle(with_values(given, content.values, content.name, content.text))
     description = with_identifier(description, identifier_in(parts["modelDescription.xml"].decode("utf-8")))
     if variant.derivatives:

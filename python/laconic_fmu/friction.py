@@ -22,6 +22,8 @@ PARAMETERS = (COEFFICIENT, "own_friction_coefficient", *DRIVE, "ground_roller_dr
 OUTPUTS = ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit", "motor_current_A",
            "supply_current_A", "supply_voltage_V", "supply_energy_J", "outer_work_J", "slip_loss_J", "axle_loss_J",
            "motor_loss_J", "supply_loss_J", "numerical_loss_J")
+OF_RIGID = "nu_rad_per_s"
+"""A variable of vehicles without hinges."""
 STATE_RATE = "der(wheel_speed_rad_per_s)"
 """The derivative that makes the wheel speeds states."""
 
@@ -53,7 +55,7 @@ def has_friction(description: Description) -> bool:
 
 def for_vehicle(description: Description) -> Description:
     """The description without what its vehicle does not need."""
-    if not any(v.name == COEFFICIENT for v in description.variables):
+    if not {COEFFICIENT, OF_RIGID} <= {v.name for v in description.variables}:
         return description  # of another model
     if slips(description):
         return _without_derivatives(reduced(description, lambda v: True, OF_SLIPPING))

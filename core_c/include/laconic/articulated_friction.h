@@ -96,14 +96,14 @@ typedef struct laconic_tree_vehicle {
     X(of, 134, CONTROL_PERIOD,        control_period_s,       control_period_s,            REAL, NOT_NEGATIVE, NEVER)
 
 #define LACONIC_TREE_WHEEL_FIELDS(X, of) \
-    X(of, 135, WHEEL_LOAD,            load_N,                 wheel_load_N,                REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 135, WHEEL_LOAD,            load_N,                 given_load_N,                REAL, NOT_NEGATIVE, NEVER) \
     X(of, 136, SCRUB_RADIUS,          scrub_radius_m,         scrub_radius_m,              REAL, NOT_NEGATIVE, NEVER) \
     X(of, 137, SCRUB_FADE,            scrub_fade_m,           scrub_fade_m,                REAL, NOT_NEGATIVE, NEVER) \
     X(of, 139,CREEP, creep, wheel_creep, REAL,NOT_NEGATIVE, NEVER)
 
 /* The array of laconic_tree_input that laconic_articulated_input has not; the step checks it. */
 #define LACONIC_TREE_INPUT_FIELDS(X, of) \
-    X(of, 138, HINGE_ANGLE,           hinge_angle_rad,        hinge_angle_rad,             REAL, FINITE,       NEVER)
+    X(of, 138, HINGE_ANGLE,           hinge_angle_rad,        steering_angle_rad,          REAL, FINITE,       NEVER)
 
 #define LACONIC_TREE_FIELDS(X) \
     LACONIC_TREE_HINGE_FIELDS(X, TREE_HINGE) LACONIC_TREE_WHEEL_FIELDS(X, TREE_WHEEL) \

@@ -38,12 +38,6 @@ static void sweep_mixed(articulated_sweep *s, const laconic_articulated_model *m
     (void)sweep_outward(s, m, eta, drive);
 }
 
-static real energy_of_twists(const laconic_articulated_model *m, const vector twist[]) {
-    real twice = dot(twist[0], form_times(&m->inertia, twist[0]));
-    for (int32_t b = 1; b <= m->body_count; b++) twice += dot(twist[b], form_times(&m->link[b - 1].inertia, twist[b]));
-    return R(0.5) * twice;
-}
-
 static real energy_of_state(const laconic_articulated_model *m, const laconic_articulated_state *state,
                             const articulated_drive *drive) {
     articulated_sweep s;
@@ -65,10 +59,9 @@ bool laconic_articulated_keeps_energy(const laconic_articulated_model *m, const 
     return is_idle(&course->start, m) && (course->constant || is_idle(&course->end, m));
 }
 
-/* Scales η to an energy; false where it is too far from it for a mere error of a method. */
-static bool restore_energy(laconic_articulated_state *state, const laconic_articulated_model *m,
-                           const articulated_drive *drive, real energy_J) {
-    const real now_J = energy_of_state(m, state, drive);
+/* Scales η from its energy to another; false where they are too far apart for a mere error of a method. */
+static bool restore_energy(laconic_articulated_state *state, const laconic_articulated_model *m, real now_J,
+                           real energy_J) {
     if (!(magnitude(now_J - energy_J) <= LARGEST_ENERGY_ERROR * energy_J)) return false;
     if (!(magnitude(now_J - energy_J) > GROWTH_BY_ROUNDING * energy_J)) return true;
     const real less = laconic_root(energy_J / now_J) - R(1);
@@ -81,7 +74,7 @@ bool laconic_articulated_hold_energy(laconic_articulated_state *after, const lac
     const real energy_J = energy_of_state(m, before, drive), now_J = energy_of_state(m, after, drive);
     if (now_J <= energy_J * (R(1) + GROWTH_BY_ROUNDING) && now_J >= energy_J * (R(1) - LARGEST_ENERGY_ERROR))
         return true;
-    return restore_energy(after, m, drive, energy_J);
+    return restore_energy(after, m, now_J, energy_J);
 }
 
 /* ------------------------------------------------------------------------------------- parts -- */
@@ -94,12 +87,11 @@ typedef struct adaptive_part {
     bool stiff;       /* by moebius-4 */
 } adaptive_part;
 
-static laconic_status take_once(laconic_articulated_state *state, const adaptive_part *p, real from, real share,
-                                laconic_refusal *why) {
+static laconic_status take_once(laconic_articulated_state *state, const adaptive_part *p, real from, real share) {
     laconic_articulated_factors factors[2];
-    if (!p->stiff) return laconic_articulated_rk4(state, p->m, p->course, from, share, false, LACONIC_REAL_MAX, why);
+    if (!p->stiff) return laconic_articulated_rk4(state, p->m, p->course, from, share, false, LACONIC_REAL_MAX, NULL);
     laconic_articulated_factors_of(factors, p->m, share * p->course->step_s);
-    return laconic_articulated_moebius_4(state, p->m, factors, p->course, from, share, why);
+    return laconic_articulated_moebius_4(state, p->m, factors, p->course, from, share, NULL);
 }
 
 /* Whether two states after one part agree, beside the energy of one. */
@@ -127,16 +119,19 @@ static bool turns_lightly(const laconic_articulated_model *m, const laconic_arti
 }
 
 /* The part in two halves, where it is right; else the state stays. */
-static bool take_judged(laconic_articulated_state *state, const adaptive_part *p, laconic_refusal *why) {
+static bool take_judged(laconic_articulated_state *state, const adaptive_part *p) {
     const articulated_drive *drive = p->course->constant ? &p->course->start : &p->course->end;
     const real half = R(0.5) * p->share;
     laconic_articulated_state once = *state, twice = *state;
-    if (take_once(&once, p, p->from, p->share, why) != LACONIC_OK) return false;
-    if (take_once(&twice, p, p->from, half, why) != LACONIC_OK) return false;
-    if (take_once(&twice, p, p->from + half, half, why) != LACONIC_OK) return false;
+    if (take_once(&once, p, p->from, p->share) != LACONIC_OK) return false;
+    if (take_once(&twice, p, p->from, half) != LACONIC_OK) return false;
+    if (take_once(&twice, p, p->from + half, half) != LACONIC_OK) return false;
     if (p->stiff && !turns_lightly(p->m, state, &twice, drive)) return false;
     if (!states_agree(p->m, &once, &twice, drive)) return false;
-    if (p->energy_J >= R(0) && !restore_energy(&twice, p->m, drive, p->energy_J)) return false;
+    if (p->energy_J >= R(0)) {
+        const real now_J = energy_of_state(p->m, &twice, drive);
+        if (!restore_energy(&twice, p->m, now_J, p->energy_J)) return false;
+    }
     *state = twice;
     return true;
 }
@@ -157,9 +152,9 @@ static int32_t fastest_follower(real *rate_per_s, const laconic_articulated_mode
     return found;
 }
 
-laconic_status laconic_articulated_refuse_trail(const laconic_articulated_model *m,
-                                                const laconic_articulated_state *state, const articulated_drive *drive,
-                                                real step_s, real largest, laconic_refusal *why) {
+/* Refuses a step for the body whose wheels follow fastest; `largest`: of step times rate. */
+static laconic_status refuse_trail(const laconic_articulated_model *m, const laconic_articulated_state *state,
+                                   const articulated_drive *drive, real step_s, real largest, laconic_refusal *why) {
     real rate_per_s;
     const int32_t body = fastest_follower(&rate_per_s, m, state, drive);
     if (body == 0) return refuse(why, LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0, step_s, R(0.5) * step_s);
@@ -178,11 +173,10 @@ laconic_status laconic_articulated_adaptive(laconic_articulated_state *state, co
         laconic_articulated_keeps_energy(m, course) ? energy_of_state(m, state, &course->start) : R(-1);
     while (done % part != 0U) part /= 2U;
     while (done < ADAPTIVE_UNITS && trials++ < MOST_TRIALS) {
-        laconic_refusal found = ALL_ZERO;
         adaptive_part p = {m, course, unit * (real)done, unit * (real)part, energy_J, false};
-        bool taken = take_judged(&after, &p, &found);
+        bool taken = take_judged(&after, &p);
         p.stiff = !taken;
-        if (!taken) taken = take_judged(&after, &p, &found);
+        if (!taken) taken = take_judged(&after, &p);
         if (taken) {
             done += part;
             if (done % (2U * part) == 0U && done < ADAPTIVE_UNITS) part *= 2U;
@@ -192,8 +186,7 @@ laconic_status laconic_articulated_adaptive(laconic_articulated_state *state, co
             break;
         }
     }
-    if (done < ADAPTIVE_UNITS)
-        return laconic_articulated_refuse_trail(m, &after, &course->start, course->step_s, LARGEST_AUTO_RATE, why);
+    if (done < ADAPTIVE_UNITS) return refuse_trail(m, &after, &course->start, course->step_s, LARGEST_AUTO_RATE, why);
     *state = after;
     return LACONIC_OK;
 }

@@ -4,7 +4,8 @@
 
 #if LACONIC_MAX_BODIES > 0
 
-/* Sweeps the state's twists outward; its commands were checked when they were taken. */
+/* Sweeps the state's twists outward. Its commands were checked when they were taken, which compilers do not know: the
+ * carriage's twist is 0 where they could give it none. */
 static void sweep_state(articulated_sweep *s, const laconic_articulated_model *m,
                         const laconic_articulated_state *state) {
     articulated_drive kept;
@@ -12,6 +13,7 @@ static void sweep_state(articulated_sweep *s, const laconic_articulated_model *m
     laconic_articulated_drive_kept(&kept, m, state);
     take_posture_of(s, m, state);
     take_eta(eta, m, state);
+    s->twist[0] = none;
     (void)sweep_outward(s, m, eta, &kept);
 }
 
@@ -30,13 +32,6 @@ static void body_poses(laconic_articulated_motion *motion, const laconic_articul
         facing[b].fraction = (laconic_binary_angle)(facing[link->parent].fraction + state->hinge[b - 1].fraction);
         motion->body_heading_rad[b - 1] = heading_wrapped(&facing[b]);
     }
-}
-
-static real kinetic_energy(const laconic_articulated_model *m, const articulated_sweep *s) {
-    real twice = dot(s->twist[0], form_times(&m->inertia, s->twist[0]));
-    for (int32_t b = 1; b <= m->body_count; b++)
-        twice += dot(s->twist[b], form_times(&m->link[b - 1].inertia, s->twist[b]));
-    return R(0.5) * twice;
 }
 
 static vector travel_of(const laconic_articulated_state *state, int32_t number) {
@@ -65,7 +60,7 @@ void laconic_articulated_motion_of(laconic_articulated_motion *motion, const lac
         motion->wheel_angle_rad[i] = state->wheel_angle_set_rad[i];
         if (!w->locked) motion->wheel_angle_rad[i] += dot(w->roll, travel_of(state, w->body));
     }
-    motion->energy_J = kinetic_energy(model, &s);
+    motion->energy_J = energy_of_twists(model, s.twist);
 }
 
 void laconic_articulated_wheel_angles_set(const laconic_articulated_model *model, laconic_articulated_state *state,

@@ -105,6 +105,13 @@ static inline void take_eta(real *eta, const laconic_articulated_model *m, const
     for (int32_t i = 0; i < m->dof; i++) eta[i] = state->eta[i].value;
 }
 
+/* Of all bodies with these twists. */
+static inline real energy_of_twists(const laconic_articulated_model *m, const vector twist[]) {
+    real twice = dot(twist[0], form_times(&m->inertia, twist[0]));
+    for (int32_t b = 1; b <= m->body_count; b++) twice += dot(twist[b], form_times(&m->link[b - 1].inertia, twist[b]));
+    return R(0.5) * twice;
+}
+
 /* ------------------------------------------------------------------------------ the next state -- */
 
 /* What a step of h adds. */
@@ -186,14 +193,10 @@ bool laconic_articulated_keeps_energy(const laconic_articulated_model *m, const 
 bool laconic_articulated_hold_energy(laconic_articulated_state *after, const laconic_articulated_state *before,
                                      const laconic_articulated_model *m, const articulated_drive *drive);
 
-/* Refuses a step for the body whose wheels follow fastest; `largest`: of step times rate. */
-laconic_status laconic_articulated_refuse_trail(const laconic_articulated_model *m,
-                                                const laconic_articulated_state *state, const articulated_drive *drive,
-                                                real step_s, real largest, laconic_refusal *why);
-
 #define LARGEST_AUTO_RATE R(64) /* rate · step, of what auto follows by its rule of parts */
 
-/* The step from `done` of 2²⁰ units on, in parts that judge themselves; refuses as the function above. */
+/* The step from `done` of 2²⁰ units on, in parts that judge themselves; refuses a step for the body whose wheels
+ * follow fastest. */
 laconic_status laconic_articulated_adaptive(laconic_articulated_state *state, const laconic_articulated_model *m,
                                             const articulated_course *course, uint32_t done, laconic_refusal *why);
 

@@ -95,4 +95,16 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]);
 uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count, uint32_t checksum, uint8_t *field,
                              uint8_t *item);
 
+#if LACONIC_NODE_WITH_XCP
+/* Where a number of the vehicle is in its struct. */
+typedef struct laconic_loader_place {
+    uint16_t offset;
+    uint8_t stride; /* from item to item; 0: the field is a single number */
+    uint8_t kind;   /* laconic_field_kind */
+} laconic_loader_place;
+
+/* False iff the vehicle has no such field or the field has no such item. `k` counts items from 0. */
+bool laconic_loader_find(laconic_loader_place *place, uint8_t field, uint8_t k);
+#endif
+
 #endif

@@ -101,6 +101,97 @@ typedef struct laconic_node_hinges {
 #define LACONIC_NODE_SEND_HINGE_RATE 4U
 #endif
 
+#if LACONIC_NODE_WITH_XCP
+/* A slave of ASAM's XCP 1.1 on CAN: a master of a calibration tool changes numbers of the vehicle and measures outputs
+ * while a rig or drives move it. In builds with LACONIC_NODE_WITH_XCP 1; the others contain nothing of it. It uses two
+ * of the node's identifiers and needs no call of a port: laconic_node_on_frame takes commands, and
+ * laconic_node_next_frame gives answers and samples, behind the node's own frames.
+ *
+ * Addresses are virtual; nobody reads or writes memory by them. All numbers have four bytes, little-endian: reals are
+ * IEEE numbers of single precision, also where the node computes in double, all others 32-bit integers.
+ *
+ *     0x10000 + 128 · field + 4 · k     PARAMETER.field of laconic.dbc; k counts its items from 0
+ *     0x20000 + 128 · bit + 4 · k       output: `bit` is the first bit of its signal in SELECT (raw_nu …; take_voltage:
+ *                                       the voltages; send_error_estimate: pages of ERROR_ESTIMATE); bit 0: step count
+ *                                       and state, as integers
+ *     0x30000                           the identification
+ *
+ * Calibration: one segment, the fields 0 to 63, with two pages. Page 1, the reference, is the vehicle of COMMIT. Page
+ * 0, the working page, begins as its copy. While the node runs on the working page, a number acts at the border of the
+ * next step, as soon as its last byte has come: laconic_plant_change() prepares the whole vehicle anew and may refuse.
+ * The master then gets an error and the node keeps its numbers; a RESULT to CALIBRATE names status, field and item.
+ * While the node runs on the reference, the working page may be inconsistent: SET_CAL_PAGE checks it. Writing a number
+ * that is already there changes no bit of it. Vehicles with hinges can be read, but not calibrated.
+ *
+ * Measurement: dynamic lists; event 0 is each step, 1 and 2 are the first steps at or behind each 10 and 100 ms. Stamps
+ * are step count · step in microseconds: integers, the same in lockstep and free run. In lockstep steps wait for room
+ * in the queue, so no sample is lost. Free run and drives do not wait: a sample without room is dropped as a whole and
+ * the master gets the event DAQ_OVERLOAD. */
+#ifndef LACONIC_XCP_LISTS
+#define LACONIC_XCP_LISTS 8
+#endif
+#ifndef LACONIC_XCP_ODTS
+#define LACONIC_XCP_ODTS 48 /* of all lists: frames of one instant */
+#endif
+#ifndef LACONIC_XCP_ENTRIES
+#define LACONIC_XCP_ENTRIES 96
+#endif
+#ifndef LACONIC_XCP_QUEUE
+#define LACONIC_XCP_QUEUE 64 /* frames */
+#endif
+#if LACONIC_XCP_LISTS < 1 || LACONIC_XCP_LISTS > 255 || LACONIC_XCP_ODTS > 252 || LACONIC_XCP_ENTRIES > 255
+#error "laconic: XCP numbers 1 to 255 lists, up to 252 ODTs and 255 entries"
+#endif
+#if LACONIC_XCP_QUEUE < LACONIC_XCP_ODTS || LACONIC_XCP_QUEUE > 255
+#error "laconic: LACONIC_XCP_QUEUE must have room for all ODTs of an instant, and at most 255 frames"
+#endif
+
+#define LACONIC_XCP_PARAMETERS 0x10000U
+#define LACONIC_XCP_OUTPUTS 0x20000U
+#define LACONIC_XCP_TEXTS 0x30000U
+#define LACONIC_XCP_EACH 128U       /* bytes of a field or an output                       */
+#define LACONIC_XCP_SEGMENT 0x2000U /* bytes of the calibration segment, and of a checksum at most */
+#define LACONIC_XCP_TEXT_BYTES 16U
+#define LACONIC_XCP_EVENTS 3U /* each step, 10 ms, 100 ms                            */
+#define LACONIC_XCP_WORKING_PAGE 0U
+#define LACONIC_XCP_REFERENCE_PAGE 1U
+
+typedef struct laconic_xcp_packet {
+    uint8_t length, data[8];
+} laconic_xcp_packet;
+
+typedef struct laconic_xcp_odt {
+    uint8_t first_entry, entries;
+} laconic_xcp_odt;
+
+typedef struct laconic_xcp_list {
+    uint8_t first_odt, odts, event, prescaler, count;
+    bool has_mode, stamped, selected, running;
+} laconic_xcp_list;
+
+typedef struct laconic_xcp {
+    bool connected, answers; /* `answer` waits to be fetched                                      */
+    bool overloaded, ended;  /* events that wait                                                  */
+    bool senses;             /* the master has read sensors: they watch every step                */
+    uint8_t phase;           /* of the allocation of lists                                        */
+    uint8_t node_page, master_page;
+    uint8_t list_count, odt_count, entry_count;
+    uint8_t at_list, at_odt, at_entry; /* where WRITE_DAQ writes                                  */
+    uint8_t first, waiting;            /* of the queue                                            */
+    uint8_t seen_bit;                  /* the output that `seen` holds at this moment; 0: none    */
+    uint32_t address;                  /* for UPLOAD, DOWNLOAD and BUILD_CHECKSUM                 */
+    uint32_t part_address;             /* of the number whose first bytes have come               */
+    uint8_t part[4];
+    laconic_xcp_packet answer;
+    laconic_xcp_list list[LACONIC_XCP_LISTS];
+    laconic_xcp_odt odt[LACONIC_XCP_ODTS];
+    uint32_t entry[LACONIC_XCP_ENTRIES]; /* address, and the size in the highest byte             */
+    laconic_xcp_packet queue[LACONIC_XCP_QUEUE];
+    laconic_raw_output seen;
+    laconic_vehicle page[2]; /* of the segment; that of the node is also the plant's vehicle      */
+} laconic_xcp;
+#endif
+
 /* Small members come first: small processors reach them by shorter instructions. */
 typedef struct laconic_node {
     uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
@@ -148,6 +239,9 @@ typedef struct laconic_node {
 #if LACONIC_NODE_WITH_HINGES
     laconic_node_hinges hinges;
 #endif
+#if LACONIC_NODE_WITH_XCP
+    laconic_xcp xcp;
+#endif
 } laconic_node;
 
 #define LACONIC_NODE_SEND_NU 1U
@@ -171,7 +265,8 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us);
 /* The next frame to send; false iff there is none. */
 bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame);
 
-/* True while on_tick has steps to take: the port should not sleep. */
+/* True while on_tick has steps to take: the port should not sleep. Steps of lockstep that wait until samples of XCP
+ * have been fetched do not count. */
 bool laconic_node_is_busy(const laconic_node *node);
 
 /* Microseconds until on_tick has something to do, at most the time to the next heartbeat; 0: now. */

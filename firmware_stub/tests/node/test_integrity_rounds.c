@@ -31,7 +31,8 @@ static uint32_t slices_of_the_model(void) {
                             sizeof on.node.hinges.model,
                             sizeof on.node.hinges.integrator,
                             sizeof on.node.hinges.start,
-                            sizeof on.node.hinges.first};
+                            sizeof on.node.hinges.first,
+                            sizeof on.node.xcp.page};
     uint32_t slices = 0;
     for (size_t k = 0; k < sizeof bytes / sizeof bytes[0]; k++) {
         slices += (uint32_t)(bytes[k] / LACONIC_INTEGRITY_SLICE);
@@ -229,6 +230,48 @@ static void test_a_change_of_motion_and_of_what_is_sent_is_noticed_as_either_is(
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
 }
 
+/* A command of an XCP master; the code of its answer, 255: done. */
+static uint8_t master(const uint8_t *command, uint8_t length) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_XCP_COMMAND, .length = length};
+    memcpy(frame.data, command, length);
+    bench_frame(&on, &frame);
+    while (bench_next(&on, &frame))
+        if (frame.id == LACONIC_WIRE_ID_BASE + LACONIC_WIRE_XCP_RESPONSE)
+            return frame.data[0] == 0xFE ? frame.data[1] : frame.data[0];
+    return 1;
+}
+
+/* The mass becomes 12.5; the code of the answer. */
+static uint8_t calibrate(void) {
+    static const uint8_t connect[2] = {0xFF}, address[8] = {0xF6, 0, 0, 0, 0x80, 0, 1};
+    static const uint8_t mass[6] = {0xF0, 4, 0, 0, 0x48, 0x41};
+    TEST_ASSERT_EQUAL_HEX8(255, master(connect, 2));
+    TEST_ASSERT_EQUAL_HEX8(255, master(address, 8));
+    return master(mass, 6);
+}
+
+static void test_numbers_of_a_master_of_xcp_are_part_of_what_is_compared(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL_HEX8(255, calibrate());
+    TEST_ASSERT_TRUE(on.node.plant.vehicle.mass_kg == (laconic_real)12.5);
+    const uint32_t rounds = on.integrity.rounds;
+    while (on.integrity.rounds < rounds + 2 && on.integrity.broken == LACONIC_INTEGRITY_SOUND) (void)slices_after(1000);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+    on.node.xcp.page[1].mass_kg = 1;
+    while (on.integrity.broken == LACONIC_INTEGRITY_SOUND) (void)slices_after(1000);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+    TEST_ASSERT_EQUAL_HEX8(0x33, calibrate());
+}
+
+static void test_a_model_that_has_changed_by_itself_is_not_calibrated(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.start.x_m = 3;
+    TEST_ASSERT_EQUAL_HEX8(0x33, calibrate());
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_round_over_the_model_lasts_its_time);
@@ -242,5 +285,7 @@ int main(void) {
     RUN_TEST(test_a_member_of_the_configuration_that_became_smaller_or_larger_is_repaired);
     RUN_TEST(test_a_change_that_one_of_the_two_sums_shows_is_noticed_both_ways);
     RUN_TEST(test_a_change_of_motion_and_of_what_is_sent_is_noticed_as_either_is);
+    RUN_TEST(test_numbers_of_a_master_of_xcp_are_part_of_what_is_compared);
+    RUN_TEST(test_a_model_that_has_changed_by_itself_is_not_calibrated);
     return UNITY_END();
 }

@@ -1,6 +1,7 @@
 /* Tests of the error estimate that a node sends: its pages, when it begins and ends, and the bits, which stay. */
 #include "node_internal.h" /* before the bench, whose `node` would be shadowed */
 
+#define BENCH_WITH_MASTER
 #include "bench.h"
 #include "drive_scene.h"
 #include "unity.h"
@@ -373,6 +374,39 @@ static void steps_of_drives_are_watched_as_the_core_does(void) {
     }
 }
 
+/* ------------------------------------------------------------------------------ a master of XCP -- */
+
+static void calibrated_numbers_begin_it_anew_and_a_master_reads_it(void) {
+    load_turning();
+    laconic_xcp_adopt(&node, &node.plant.vehicle);
+    DONE_BY(0xFF, 0);
+    REFUSED(XCP_ACCESS_DENIED, 0xF4, 4, 0, 0, BYTES(OUTPUT(37, 0)));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
+    node.estimated.now.place_m = REAL(0.25);
+    node.estimated.largest.nu_rad_per_s = REAL(0.5);
+    TEST_ASSERT_EQUAL_FLOAT(0.25F, real_at(OUTPUT(37, 1)));
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, real_at(OUTPUT(37, 4)));
+    REFUSED(XCP_ACCESS_DENIED, 0xF4, 4, 0, 0, BYTES(OUTPUT(37, 8)));
+    bench_start_lockstep();
+    bench_step(64);
+    TEST_ASSERT_TRUE(node.estimate.taken > 0);
+    TEST_ASSERT_EQUAL_HEX8(DONE, write_real(PARAMETER(LACONIC_FIELD_MASS, 0), 20));
+    TEST_ASSERT_TRUE(node.estimates && node.estimate.taken == 0);
+}
+
+static void calibrated_numbers_act_also_where_it_cannot_begin(void) {
+    load_turning();
+    laconic_xcp_adopt(&node, &node.plant.vehicle);
+    DONE_BY(0xFF, 0);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
+    node.plant.integrator.step_s = 12 * LACONIC_REAL_MIN;
+    TEST_ASSERT_EQUAL_HEX8(DONE, write_real(PARAMETER(LACONIC_FIELD_MASS, 0), 20));
+    TEST_ASSERT_FALSE(node.estimates);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_OVERFLOW, node.answer[LACONIC_WIRE_HELLO].status);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_STEP, node.answer[LACONIC_WIRE_HELLO].field);
+    TEST_ASSERT_TRUE(node.plant.vehicle.mass_kg == 20);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(unless_chosen_there_is_none);
@@ -396,5 +430,7 @@ int main(void) {
     RUN_TEST(steps_behind_a_refused_one_are_not_watched);
     RUN_TEST(a_reset_that_cannot_begin_it_names_the_field);
     RUN_TEST(steps_of_drives_are_watched_as_the_core_does);
+    RUN_TEST(calibrated_numbers_begin_it_anew_and_a_master_reads_it);
+    RUN_TEST(calibrated_numbers_act_also_where_it_cannot_begin);
     return UNITY_END();
 }

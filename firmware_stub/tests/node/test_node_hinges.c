@@ -58,6 +58,17 @@ static void a_body_without_a_required_number_is_refused_by_field_and_item(void) 
     TEST_ASSERT_EQUAL_UINT8(2, data[5]);
 }
 
+static void a_kind_of_hinge_beyond_one_byte_is_refused_and_not_cut(void) {
+    const parameter kinds[] = {INTEGER(BODY_HINGE, 1, 257), INTEGER(BODY_HINGE, 1, 128)};
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        begin_tricycle(&prescribed);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, send_parameter(&kinds[k]));
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, commit());
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_FIELD_BODY_HINGE, data[4]);
+        TEST_ASSERT_EQUAL_UINT8(1, data[5]);
+    }
+}
+
 static void what_a_vehicle_with_hinges_does_not_have_is_refused(void) {
     const parameter others[] = {NUMBER(START_NU, 1, 1), NUMBER(IMU_ACCELERATION_BIAS, 1, 1)};
     const uint8_t fields[] = {LACONIC_WIRE_FIELD_START_NU, LACONIC_WIRE_FIELD_IMU_X};
@@ -269,7 +280,8 @@ static void a_plain_vehicle_after_one_with_hinges_moves_by_the_plant(void) {
     load_tricycle(&prescribed);
     select_bits(0, 0, 0, 7, 15);
     bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
-    for (size_t k = 0; k < 21; k++) {
+    for (uint8_t wheel = 1; wheel <= 2; wheel++) send_rolling(wheel);
+    for (size_t k = 0; common[k].field != LACONIC_WIRE_FIELD_BODY_COUNT; k++) {
         const bool of_third = common[k].item == 3;
         const parameter two = INTEGER(WHEEL_COUNT, 0, 2);
         if (!of_third) send_parameter(common[k].field == two.field ? &two : &common[k]);
@@ -311,6 +323,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_vehicle_with_hinges_comes_by_parameters);
     RUN_TEST(a_body_without_a_required_number_is_refused_by_field_and_item);
+    RUN_TEST(a_kind_of_hinge_beyond_one_byte_is_refused_and_not_cut);
     RUN_TEST(what_a_vehicle_with_hinges_does_not_have_is_refused);
     RUN_TEST(a_refused_vehicle_leaves_the_one_before);
     RUN_TEST(voltages_and_rates_make_the_step_of_the_core);

@@ -3,7 +3,6 @@
 
 #include "bench.h"
 #include "drive_scene.h"
-#include "laconic_node/crc.h"
 #include "unity.h"
 
 static uint8_t data[LACONIC_FRAME_BYTES];
@@ -68,8 +67,6 @@ static void each_setting_has_its_number_on_the_wire(void) {
 
 /* A puck with what it must have, and the delay; the status of COMMIT's RESULT, which stays in `data`. */
 static uint8_t commit_puck(int32_t delay_steps) {
-    uint8_t frame[LACONIC_FRAME_BYTES] = {0};
-    struct laconic_dbc_commit_t commit;
     laconic_loader_begin(&node.loader);
     real_parameter(LACONIC_FIELD_MASS, 0, 2);
     real_parameter(LACONIC_FIELD_YAW_INERTIA, 0, 1);
@@ -77,11 +74,7 @@ static uint8_t commit_puck(int32_t delay_steps) {
     real_parameter(LACONIC_FIELD_STEP, 0, REAL(0.01));
     parameter(0, LACONIC_FIELD_WHEEL_COUNT, 0, 0);
     parameter(0, LACONIC_SENSOR_FIELD_IMU_DELAY, 0, (uint32_t)delay_steps);
-    commit = (struct laconic_dbc_commit_t){.frame_count = node.loader.frame_count,
-                                           .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
-    laconic_dbc_commit_pack(frame, &commit, 8);
-    bench_send(LACONIC_WIRE_COMMIT, frame);
-    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+    return bench_commit(data);
 }
 
 static void bad_settings_are_refused_with_their_field_and_the_vehicle_stays(void) {

@@ -3,8 +3,13 @@
 #define BENCH_H
 
 #include "laconic_dbc.h"
+#include "laconic_node/crc.h"
 #include "laconic_node/node.h"
 #include "laconic_node/protection.h"
+
+#ifdef BENCH_WITH_MASTER
+#include "unity.h"
+#endif
 
 #include <string.h>
 
@@ -55,6 +60,15 @@ static inline uint8_t bench_control(uint8_t command, uint16_t rate, uint16_t wat
             if (laconic_wire[k].key == LACONIC_WIRE_KEY_RUN) sent[k] = 0;
     }
     return status;
+}
+
+/* The status of COMMIT; its field and item stay in `data`. */
+static inline uint8_t bench_commit(uint8_t data[LACONIC_FRAME_BYTES]) {
+    const struct laconic_dbc_commit_t frame = {.frame_count = node.loader.frame_count,
+                                               .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
+    laconic_dbc_commit_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_COMMIT, data);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
 }
 
 static inline uint8_t bench_start_lockstep(void) { return bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 0, 0); }
@@ -161,5 +175,72 @@ static inline void bench_begin(void) {
     laconic_node_init(&node, &config, now_us);
     bench_open(0x5E55104EU);
 }
+
+/* ------------------------------------------------------------------------- a master of XCP -- */
+
+#if LACONIC_NODE_WITH_XCP && defined BENCH_WITH_MASTER
+
+enum { DONE = 0xFF };
+
+static uint8_t answer[8], answer_length;
+
+/* The next frame of the slave; false: none. */
+static inline bool hear(void) {
+    laconic_frame frame;
+    while (laconic_node_next_frame(&node, &frame)) {
+        if (frame.id != LACONIC_WIRE_ID_BASE + LACONIC_WIRE_XCP_RESPONSE) continue;
+        answer_length = frame.length;
+        memcpy(answer, frame.data, 8);
+        return true;
+    }
+    answer_length = 0;
+    return false;
+}
+
+static inline void tell(const uint8_t *command, uint8_t length) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_XCP_COMMAND, .length = length};
+    memcpy(frame.data, command, length);
+    laconic_node_on_frame(&node, &frame, now_us);
+}
+
+/* DONE, the error of the answer, or 1 where there is no answer. */
+static inline uint8_t ask(const uint8_t *command, uint8_t length) {
+    tell(command, length);
+    if (!hear()) return 1;
+    return answer[0] == 0xFE ? answer[1] : answer[0];
+}
+
+#define ASK(...) ask((const uint8_t[]){__VA_ARGS__}, (uint8_t)sizeof((const uint8_t[]){__VA_ARGS__}))
+#define DONE_BY(...) TEST_ASSERT_EQUAL_HEX8(DONE, ASK(__VA_ARGS__))
+#define REFUSED(error, ...) TEST_ASSERT_EQUAL_HEX8(error, ASK(__VA_ARGS__))
+#define BYTES(address) \
+    (uint8_t)(address), (uint8_t)((address) >> 8), (uint8_t)((address) >> 16), (uint8_t)((address) >> 24)
+#define PARAMETER(field, k) (LACONIC_XCP_PARAMETERS + LACONIC_XCP_EACH * (uint32_t)(field) + 4U * (k))
+#define OUTPUT(bit, k) (LACONIC_XCP_OUTPUTS + LACONIC_XCP_EACH * (uint32_t)(bit) + 4U * (k))
+
+static inline float real_at(uint32_t address) {
+    float value;
+    DONE_BY(0xF4, 4, 0, 0, BYTES(address));
+    memcpy(&value, answer + 1, sizeof value);
+    return value;
+}
+
+static inline uint32_t word_at(uint32_t address) {
+    DONE_BY(0xF4, 4, 0, 0, BYTES(address));
+    return word32(answer + 1);
+}
+
+static inline uint8_t write_word(uint32_t address, uint32_t word) {
+    DONE_BY(0xF6, 0, 0, 0, BYTES(address));
+    return ASK(0xF0, 4, BYTES(word));
+}
+
+static inline uint8_t write_real(uint32_t address, float value) {
+    uint32_t word;
+    memcpy(&word, &value, sizeof word);
+    return write_word(address, word);
+}
+
+#endif
 
 #endif

@@ -6,7 +6,6 @@
 #include "node_internal.h" /* first: bench.h names a variable as its functions name an argument */
 /* clang-format on */
 #include "bench.h"
-#include "laconic_node/crc.h"
 #include "unity.h"
 
 #define STEP_S ((laconic_real)0.01)
@@ -29,18 +28,12 @@ static const parameter common[] = {
     INTEGER(METHOD, 0, 0),
     NUMBER(STEP, 0, STEP_S),
     INTEGER(WHEEL_COUNT, 0, 3),
-    INTEGER(WHEEL_KIND, 1, 2),
-    INTEGER(WHEEL_KIND, 2, 2),
-    INTEGER(WHEEL_KIND, 3, 2),
     NUMBER(WHEEL_X, 1, 0),
     NUMBER(WHEEL_X, 2, 0),
     NUMBER(WHEEL_X, 3, 0),
     NUMBER(WHEEL_Y, 1, 0.2),
     NUMBER(WHEEL_Y, 2, -0.2),
     NUMBER(WHEEL_Y, 3, 0),
-    NUMBER(AXLE, 1, -1.5707963267949),
-    NUMBER(AXLE, 2, -1.5707963267949),
-    NUMBER(AXLE, 3, -1.5707963267949),
     INTEGER(BODY_COUNT, 0, 1),
     INTEGER(WHEEL_BODY, 3, 1),
     NUMBER(BODY_HINGE_X, 1, 1),
@@ -71,19 +64,21 @@ static inline uint8_t send_parameter(const parameter *it) {
     return status;
 }
 
-/* The status of COMMIT; its field and item stay in `data`. */
-static inline uint8_t commit(void) {
-    const struct laconic_dbc_commit_t frame = {.frame_count = node.loader.frame_count,
-                                               .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
-    laconic_dbc_commit_pack(data, &frame, 8);
-    bench_send(LACONIC_WIRE_COMMIT, data);
-    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+static inline uint8_t commit(void) { return bench_commit(data); }
+
+/* That wheel rolls along the first axis. */
+static inline void send_rolling(uint8_t wheel) {
+    const parameter kind = INTEGER(WHEEL_KIND, wheel, LACONIC_WHEEL_FIXED);
+    const parameter axle = NUMBER(AXLE, wheel, -1.5707963267949);
+    TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&kind));
+    TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&axle));
 }
 
 static inline void begin_tricycle(const parameter *hinge) {
     bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
     for (size_t k = 0; k < sizeof common / sizeof common[0]; k++)
         TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&common[k]));
+    for (uint8_t wheel = 1; wheel <= 3; wheel++) send_rolling(wheel);
     TEST_ASSERT_EQUAL_UINT8(0, send_parameter(hinge));
 }
 

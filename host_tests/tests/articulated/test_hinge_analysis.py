@@ -114,6 +114,14 @@ def test_a_steering_angle_gives_the_circle_of_the_carriage(scene: str, name: str
     assert (turn.curvature_per_m > 0.0) == (angle > 0.0 if scene != "wheel_loader" else angle < 0.0)
 
 
+def test_a_wheel_turned_by_more_than_a_right_angle_is_said_to_roll_as_one_that_is_not() -> None:
+    asked = study_hinges(laconic.read_scene("f1tenth"), steering=(("front_left", 0.3), ("front_left", 0.3 + math.pi)))
+    first, second = asked.turns
+    assert first.asked == "front_left at 17.19°"
+    assert second.asked == "front_left at 197.2°, where it rolls as at 17.19°"
+    assert second.radius_m == pytest.approx(first.radius_m)
+
+
 def test_a_carriage_on_wheels_off_the_first_axis_goes_straight_along_them() -> None:
     tables = two_wheels(caster=[CASTER])
     for wheel in tables["vehicle"]["wheel"]:

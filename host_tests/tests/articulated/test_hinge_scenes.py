@@ -12,6 +12,7 @@ from hinge_scenes import CASTER, HINGED, held, scene_with, tables_of, two_wheels
 
 from laconic import Trajectory, build_scene, read_scene, simulate
 from laconic.base.paths import scene_names
+from laconic.cli.commands.simulate import resting, summary
 from laconic.scene import rigid_scene_names
 from laconic.scene.hinges import has_hinges
 from laconic.tools.analyse.hinged import hinged_numbers, study_hinges
@@ -196,3 +197,33 @@ def test_the_loads_of_a_trailer_are_shared_with_its_hitch() -> None:
     hitch = 400.0 * GRAVITY_M_PER_S2 - third
     second = (400.0 * GRAVITY_M_PER_S2 * 1.2 + hitch * 1.8) / 1.3
     assert loads[5] + loads[6] == pytest.approx(second, rel=1e-12)
+
+
+def tipping(**vehicle: float) -> dict[str, Any]:
+    tables = tables_of("tricycle_agv")
+    tables["vehicle"] |= vehicle
+    return tables | {"run": {"duration_s": 0.1, "step_s": 0.01}, "input": []}
+
+
+def test_a_vehicle_with_hinges_that_tips_is_named_with_what_it_stands_on() -> None:
+    run = simulate(build_scene(tipping(com_x_m=-0.4)))
+    standing = resting(run)
+    assert standing and "it tips: its centre of mass lies" in standing.tips and "from wheel" in standing.tips
+    assert run.lifted and summary(run)["lifted"] == {"wheel": run.lifted[0], "time_s": 0.0}
+    run = simulate(build_scene(tipping()))
+    standing = resting(run)
+    assert standing and standing.tips == "" and standing.weight_N > 1000.0 and run.lifted is None
+
+
+def test_a_trailer_whose_wheel_would_have_to_pull_tips() -> None:
+    tables = tables_of("tugger_train") | {"run": {"duration_s": 0.1, "step_s": 0.01}, "input": []}
+    tables["vehicle"]["trailer"][-1]["com_x_m"] = 0.3
+    standing = resting(simulate(build_scene(tables)))
+    assert standing and standing.tips.startswith("third tips: wheel 8 would have to pull with")
+
+
+def test_a_wheel_that_lifts_on_ground_with_friction_is_reported() -> None:
+    tables = tipping(com_x_m=-0.4) | {"ground": {"friction_coefficient": 0.7}}
+    del tables["vehicle"]["friction_coefficient"]
+    run = simulate(build_scene(tables))
+    assert run.lifted and run.lifted[1] <= 0.02

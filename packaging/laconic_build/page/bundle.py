@@ -1,14 +1,19 @@
 """Our ES modules as one script: in the order in which they import each other, without imports and exports.
 
 All of them then share one scope, so no two modules may have a name in common at their top level; the bundler checks.
+A module that is imported under another name, `import { load as loadHinges }`, gets a scope of its own.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
-IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<target>[^"]+)";\n', re.MULTILINE)
+IMPORT = re.compile(r'^import \{(?P<names>[^}]*)\} from "(?P<target>[^"]+)";\n', re.MULTILINE)
+RENAMED = re.compile(r"(\w+) as (\w+)")
+COMMENT = r"/\*\*(?:(?!\*/)[\s\S])*?\*/"
+DOCUMENTED = re.compile(rf"^[ \t]*{COMMENT}\n|{COMMENT} ?", re.MULTILINE)
 EXPORT_LIST = re.compile(r"^export \{[^}]*\};\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=async |function |class |const |let )", re.MULTILINE)
 TOP_LEVEL = re.compile(r"^(?:export )?(?:async )?(?:function\*?|class|const|let) (?:(\w+)|\{([^}]*)\}|\[([^\]]*)\])",
@@ -19,32 +24,57 @@ class BadBundle(Exception):
     """What the modules have that the bundler cannot take; one line."""
 
 
-def bundle(entry: Path, aliases: dict[str, Path]) -> str:
+def read(path: Path) -> str:
+    """A module as it is."""
+    return path.read_text(encoding="utf-8")
+
+
+def bundle(entry: Path, aliases: dict[str, Path], text_of: Callable[[Path], str] = read) -> str:
     """The script of `entry` and all that it imports; a name of `aliases` stands for a file elsewhere."""
     ordered: list[Path] = []
-    visit(entry.resolve(), aliases, ordered, ())
+    renamed: dict[Path, dict[str, str]] = {}
+    visit(entry.resolve(), aliases, ordered, renamed, ())
     owner: dict[str, Path] = {}
     parts = []
     for path in ordered:
-        text = path.read_text(encoding="utf-8")
-        for name in top_level_names(text):
+        text, others = text_of(path), renamed[path]
+        for name in others.values() if others else top_level_names(text):
             if name in owner:
                 raise BadBundle(f"{path.name}: {name} is a name of {owner[name].name}, too; rename one of them")
             owner[name] = path
-        parts.append(stripped(text, path))
+        parts.append(in_own_scope(stripped(text, path), others) if others else stripped(text, path))
     return "\n".join(parts)
 
 
-def visit(path: Path, aliases: dict[str, Path], ordered: list[Path], above: tuple[Path, ...]) -> None:
-    """Appends what a module imports, then the module."""
+def visit(path: Path, aliases: dict[str, Path], ordered: list[Path], renamed: dict[Path, dict[str, str]],
+          above: tuple[Path, ...]) -> None:
+    """Appends what a module imports, then the module; notes the other names by which one is imported."""
+    renamed.setdefault(path, {})
     if path in ordered:
         return
     if path in above:
         raise BadBundle(f"{path.name}: imports itself by way of {above[-1].name}")
-    for found in IMPORT.finditer(path.read_text(encoding="utf-8")):
-        target = found["target"]
-        visit(aliases.get(target, path.parent / target).resolve(), aliases, ordered, (*above, path))
+    for found in IMPORT.finditer(read(path)):
+        target = aliases.get(found["target"], path.parent / found["target"]).resolve()
+        names, others = found["names"].split(","), dict(RENAMED.findall(found["names"]))
+        if others and len(others) < len([name for name in names if name.strip()]):
+            raise BadBundle(f"{path.name}: imports {target.name} by its own and by other names; use one kind")
+        if target in renamed and renamed[target] != others:
+            raise BadBundle(f"{path.name}: imports {target.name} by other names than another module; use the same")
+        visit(target, aliases, ordered, renamed, (*above, path))
+        renamed[target] = others
     ordered.append(path)
+
+
+def in_own_scope(text: str, others: dict[str, str]) -> str:
+    """A module whose names no other one sees but by the other names."""
+    outside = ", ".join(f"{name}: {other}" for name, other in others.items())
+    return f"const {{ {outside} }} = (() => {{\n{text}return {{ {', '.join(others)} }};\n}})();\n"
+
+
+def without_types(text: str) -> str:
+    """A module without its comments of types and functions, which mean nothing to a browser."""
+    return DOCUMENTED.sub("", text)
 
 
 def top_level_names(text: str) -> list[str]:

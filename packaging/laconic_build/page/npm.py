@@ -63,7 +63,7 @@ def keys_of_hinges() -> str:
     for key in HINGE_KEYS:
         table, _, name = key.path.rpartition(".")
         tables.setdefault(table, {})[name] = traits_of(key)
-    text = json.dumps(tables, indent=2)
+    text = json.dumps(tables, separators=(",", ":")).replace('"},"', '"},\n"')
     return ("// Made of the command's list of keys (python/laconic/scene/keys.py).\n"
             f"/** @type {{Record<string, Record<string, any>>}} */\nexport const HINGE_KEYS = {text};\n")
 

@@ -6,16 +6,35 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from laconic import read_scene
+from laconic import Scene, read_scene
 from laconic.scene.hinges import file_has_hinges
+from laconic.scene.table import read_toml
 
 NOTHING: tuple[Any, ...] = (0, False, "", None, (), (0.0, 0.0))
 
 
+OF_FILE = ("vehicle", "ground", "initial")
+"""Tables of a scene with hinges that the npm package reads as they are."""
+
+
 def scenes_in(folder: Path) -> list[dict[str, Any]]:
-    """Every scene without hinges, which the page does not have yet, sorted by its name."""
-    found = [plain_scene(path) for path in sorted(folder.glob("*.toml")) if not file_has_hinges(path)]
+    """Every scene, sorted by its name; those of the paper are last."""
+    found = [hinged_scene(path) if file_has_hinges(path) else plain_scene(path)
+             for path in sorted(folder.glob("*.toml"))]
     return sorted(found, key=lambda scene: (scene["id"].startswith("paper"), scene["name"].casefold()))
+
+
+def hinged_scene(path: Path) -> dict[str, Any]:
+    """One scene with hinges by the tables of its file, in which a caster is a caster."""
+    scene, given = read_scene(path), read_toml(path).plain()
+    return {"id": path.stem, "name": scene.name, "source": scene.source,
+            **{key: given[key] for key in OF_FILE if key in given}, **driven(scene)}
+
+
+def driven(scene: Scene) -> dict[str, Any]:
+    """What drives a scene, for how long, and by what."""
+    return {"input": [plain_input(each) for each in scene.inputs],
+            "run": {"duration_s": scene.run.duration_s, "step_s": scene.run.step_s, "method": scene.run.method}}
 
 
 def plain_scene(path: Path) -> dict[str, Any]:
@@ -33,9 +52,7 @@ def plain_scene(path: Path) -> dict[str, Any]:
         plain["ground"] = ground
     if initial := shortened(dataclasses.asdict(scene.initial)):
         plain["initial"] = initial
-    plain["input"] = [plain_input(each) for each in scene.inputs]
-    plain["run"] = {"duration_s": scene.run.duration_s, "step_s": scene.run.step_s, "method": scene.run.method}
-    return plain
+    return plain | driven(scene)
 
 
 def plain_wheel(wheel: dict[str, Any]) -> dict[str, Any]:

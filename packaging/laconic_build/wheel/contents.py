@@ -25,7 +25,8 @@ LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in 
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
 DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
 FMUS = (*(f"{name}_fmi{version}.fmu"
-          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated", "LaconicController")
+          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated", "LaconicSlipping",
+                       "LaconicController")
           for version in (2, 3)),
         *(f"{name}_fmi3.fmu" for name in ("LaconicNode", "LaconicCanBus", "LaconicCanController")))
 

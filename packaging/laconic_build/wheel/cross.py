@@ -29,8 +29,8 @@ def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python
                 node_dir / "include", node_dir / "node", node_dir / "drives", node_dir / "ports" / "library", wire]
     position = [] if platform.is_windows else ["-fPIC"]
     for real in REALS:
-        flags = [*position, "-DLACONIC_NODE_WITH_ESTIMATE=1", "-DLACONIC_NODE_WITH_HINGES=1",
-                 *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+        parts = [f"-DLACONIC_NODE_WITH_{part}=1" for part in ("ESTIMATE", "HINGES", "XCP")]
+        flags = [*position, *parts, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
         whole = [*core, *node]
         for name, sources in ((f"laconic_{real}", core), (f"laconic_node_{real}", [*whole, *apart])):
             compile_to(platform.target, sources, includes, out / "lib" / platform.library.format(name),

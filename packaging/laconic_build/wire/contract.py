@@ -24,6 +24,16 @@ def attribute(message: Message, name: str) -> str:
     return str(found.value if found else message.dbc.attribute_definitions[name].default_value)
 
 
+def is_protected(message: Message) -> bool:
+    """Whether the message has CRC and counter; those of XCP have neither."""
+    return attribute(message, "E2EProfile") != "none"
+
+
+def protected(database: Database) -> list[Message]:
+    """The messages between rig and node, in the order of the file."""
+    return [message for message in database.messages if is_protected(message)]
+
+
 def limits(signal: Signal) -> tuple[float, float]:
     """Least and largest value, in the signal's unit."""
     if signal.minimum is None or signal.maximum is None:

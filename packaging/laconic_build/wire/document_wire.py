@@ -12,7 +12,7 @@ from cantools.database.can import Database, Message, Signal
 import reference_client as reference
 from laconic.scene import METHODS
 
-from .contract import attribute, choices, limits, load
+from .contract import attribute, choices, is_protected, limits, load
 from .wire_parameters import PARAMETERS
 
 HERE = Path(__file__).resolve().parent
@@ -76,9 +76,10 @@ def overview(message: Message) -> str:
     """One row of the list of frames."""
     key = attribute(message, "E2EKey")
     cells = (f"0x{message.frame_id:X}", f"[{message.name}](#{message.name.lower()})", message.senders[0].lower(),
-             f"{message.length} FD" if message.is_fd else str(message.length),
+             f"{message.length} FD" if message.is_fd else f"{'' if is_protected(message) else '1 to '}{message.length}",
              time_text(attribute(message, "GenMsgCycleTime")), time_text(attribute(message, "GenMsgTimeout")),
-             "plain" if key == "none" else key, attribute(message, "E2EMaxDeltaCounter"))
+             *(("plain" if key == "none" else key, attribute(message, "E2EMaxDeltaCounter"))
+               if is_protected(message) else ("no CRC", "–")))
     return "| " + " | ".join(cells) + " |"
 
 
@@ -166,7 +167,8 @@ def page() -> str:
     status = choices(result.get_signal_by_name("status"))
     parts = {
         "version": str(database.version), "frames": "\n".join(map(overview, messages)), "examples": examples(client),
-        "data_ids": "\n".join(f"| {m.name} | `{attribute(m, 'E2EDataID')}` |" for m in messages),
+        "data_ids": "\n".join(f"| {m.name} | `{attribute(m, 'E2EDataID')}` |" for m in messages
+                                if is_protected(m)),
         "parameters": parameter_rows(database),
         "methods": ", ".join(f"{number} {name}" for number, name in enumerate(METHODS)),
         "protocols": PROTOCOLS,

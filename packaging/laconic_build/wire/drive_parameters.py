@@ -10,7 +10,8 @@ LIST = SOURCE_DIR / "firmware_stub" / "include" / "laconic_drives" / "settings.h
 ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+), +\w+, +(\w+),[\s\\]+(\w+),[\s\\]+\w+\)")
 UNITS = {"A": "A", "V": "V", "s": "s", "ohm": "Ω", "rad_per_s": "rad/s", "per_s": "1/s", "Nm_per_A": "N m/A",
          "As": "A s", "Vs_per_rad": "V s/rad", "m": "m", "rad": "rad", "m_per_s2": "m/s²",
-         "m_per_s2_per_sqrt_Hz": "m/s²/√Hz", "rad_per_s_per_sqrt_Hz": "rad/s/√Hz"}
+         "m_per_s2_per_sqrt_Hz": "m/s²/√Hz", "rad_per_s_per_sqrt_Hz": "rad/s/√Hz", "kg": "kg", "kgm2": "kg m²",
+         "Nms": "N m s", "Nm": "N m", "Nm_per_V": "N m/V", "m_per_s": "m/s"}
 NOTES = {"DRIVE_PROTOCOL": ": see below; 0 or not sent: no drives",
          "DRIVE_NODE_ID": ": of a wheel that has a drive; it is sent for no other wheel",
          "DRIVE_GEAR_RATIO": ": turns of the shaft for one of the wheel, below 0: reversed; not 0",

@@ -13,9 +13,10 @@ from pathlib import Path
 
 from cantools.database.can import Database, Message, Signal
 
-from .contract import attribute, limits, load
+from .contract import attribute, limits, load, protected
 
 ID_BASE = 1664
+ID_STRIDE = 32
 NOTE = "/* Generated from laconic.dbc. */\n"
 OPTIONAL = {"WHEEL_ANGLE": "SENSORS", "IMU": "SENSORS", "ENCODER": "SENSORS", "ERROR_ESTIMATE": "ESTIMATE",
             "STEERING": "HINGES", "VELOCITY": "HINGES", "HINGE_ANGLE": "HINGES", "HINGE_RATE": "HINGES"}
@@ -23,7 +24,8 @@ OPTIONAL = {"WHEEL_ANGLE": "SENSORS", "IMU": "SENSORS", "ENCODER": "SENSORS", "E
 PARTS = tuple(dict.fromkeys(OPTIONAL.values()))
 DEFAULTS = {"SENSORS": "1 /* 0: neither sensors nor their frames, for small images */",
             "ESTIMATE": "0 /* 1: an error estimate and its frame; links the core's */",
-            "HINGES": "0 /* 1: vehicles with hinges and their frames; links the core's articulated */"}
+            "HINGES": "0 /* 1: vehicles with hinges and their frames; links the core's articulated */",
+            "XCP": "0 /* 1: a slave of XCP, whose frames have no row in the tables */"}
 MADE_AT = re.compile(r"^( \* @brief .* by cantools version [\w.]+) .*\.$", re.MULTILINE)
 KEYS = ("none", "nonce", "session", "run")  # what keys a frame's protection
 
@@ -47,12 +49,14 @@ def constants(database: Database) -> list[str]:
     lines = [f"#define LACONIC_WIRE_VERSION {int(database.version or 0)}", f"#define LACONIC_WIRE_ID_BASE {ID_BASE}"]
     for message in database.messages:
         lines.append(f"#define LACONIC_WIRE_{message.name} {message.frame_id - ID_BASE}")
-    always = [message for message in database.messages if message.name not in OPTIONAL]
+    check_identifiers(database)
+    messages = protected(database)
+    always = [message for message in messages if message.name not in OPTIONAL]
     rig, node = ([m.frame_id - ID_BASE for m in always if side in m.senders] for side in ("RIG", "NODE"))
     if max(rig) >= min(node):
         raise SystemExit("laconic.dbc: identifiers of the rig's frames must all lie below those of the node's")
     lines += [f"#define LACONIC_WIRE_RIG_OFFSETS {max(rig) + 1}", f"#define LACONIC_WIRE_NODE_FIRST {min(node)}"]
-    if [m.name for m in database.messages[-len(OPTIONAL):]] != list(OPTIONAL):
+    if [m.name for m in messages[-len(OPTIONAL):]] != list(OPTIONAL):
         raise SystemExit(f"laconic.dbc: {', '.join(OPTIONAL)} must be the last frames")
     for part, default in DEFAULTS.items():
         lines += [f"#ifndef LACONIC_NODE_WITH_{part}", f"#define LACONIC_NODE_WITH_{part} {default}", "#endif"]
@@ -68,7 +72,7 @@ def constants(database: Database) -> list[str]:
         raise SystemExit("laconic.dbc: identifiers of the frames with E2EKey run must follow one another")
     lines += [f"#define LACONIC_WIRE_RUN_FIRST {min(moving)}", f"#define LACONIC_WIRE_RUN_OFFSETS {len(moving)}"]
     choices: dict[str, int] = {}
-    for message in database.messages:
+    for message in messages:
         for signal in message.signals:
             for number, text in (signal.choices or {}).items():
                 if signal.name in ("command", "state") or (signal.name == "status" and number >= 64):
@@ -78,6 +82,15 @@ def constants(database: Database) -> list[str]:
             lines += scale(message, signal)
     lines += [f"#define LACONIC_WIRE_KEY_{key.upper()} {number}" for number, key in enumerate(KEYS)]
     return lines + [f"#define {name} {number}" for name, number in choices.items()]
+
+
+def check_identifiers(database: Database) -> None:
+    """Ends with a message where two frames have one identifier, or one is not among those of a node."""
+    offsets = [message.frame_id - ID_BASE for message in database.messages]
+    for message, offset in zip(database.messages, offsets, strict=True):
+        if offsets.count(offset) > 1 or not 0 <= offset < ID_STRIDE:
+            raise SystemExit(f"laconic.dbc: {message.name}: identifier {message.frame_id} is used twice or is not one "
+                             f"of the {ID_STRIDE} from {ID_BASE} on")
 
 
 def counts(first: int, last: int, classic: int) -> list[str]:
@@ -107,7 +120,7 @@ def scale(message: Message, signal: Signal) -> list[str]:
 
 def rows(database: Database) -> list[str]:
     """One initializer per identifier offset; unused offsets have length 0."""
-    by_offset = {message.frame_id - ID_BASE: message for message in database.messages}
+    by_offset = {message.frame_id - ID_BASE: message for message in protected(database)}
     lists = [offset for offset, message in by_offset.items() if not message.is_fd]
     lines = []
     for offset in sorted(by_offset):
@@ -121,14 +134,14 @@ def rows(database: Database) -> list[str]:
 
 def tables(database: Database) -> list[str]:
     """DataID lists of the classic frames and DataIDs of the FD frames."""
-    classic = [m for m in database.messages if not m.is_fd]
+    classic = [m for m in protected(database) if not m.is_fd]
     lists = []
     for message in classic:
         ids = ", ".join(f"0x{number:02X}" for number in data_ids(message))
         lists.append(f"    {{{ids}}}, /* {message.name} */")
     lines = ["const uint8_t laconic_wire_data_ids[LACONIC_WIRE_CLASSIC][16] = {", *guarded(lists)]
     lines += ["};", "", "uint16_t laconic_wire_data_id(uint8_t offset) {", "    switch (offset) {"]
-    for message in database.messages:
+    for message in protected(database):
         if message.is_fd:
             low, high = data_ids(message)
             lines.append(f"    case {message.frame_id - ID_BASE}: return 0x{high:02X}{low:02X}U;")

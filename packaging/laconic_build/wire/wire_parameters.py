@@ -28,7 +28,6 @@ HINGE_LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "articulated.h"
 HINGE_ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+), +\w+, +(\w+),[\s\\]+\w+,[\s\\]+(\w+)\)")
 ONLY_REFUSED = ("HINGE_VOLTAGE", "HINGE_TORQUE", "HINGE_ACCELERATION", "TWIST_RATE")
 """Inputs, which are only named in refusals."""
-HINGE_UNITS = {"kg": "kg", "kgm2": "kg m²", "Nms": "N m s", "Nm": "N m", "Nm_per_V": "N m/V", "m_per_s": "m/s"}
 HINGE_ITEMS = {"WHEEL_BODY": WHEEL, "BODY_COUNT": NONE, "START_VELOCITY": "1, 2", "START_YAW_RATE": NONE,
                "TWIST": COMPONENT}
 HINGE_NOTES = {"BODY_PARENT": "a body before it; 0: the carriage", "BODY_COUNT": "bodies on hinges; 0: none",
@@ -69,11 +68,9 @@ def hinge_parameters() -> dict[str, tuple[str, str, str, str]]:
     found = {}
     for identifier, member, kind, need in HINGE_ROW.findall(HINGE_LIST.read_text(encoding="utf-8")):
         if identifier not in ONLY_REFUSED:
-            endings = [ending for ending in HINGE_UNITS if member.endswith("_" + ending)]
-            unit = HINGE_UNITS[max(endings, key=len)] if endings else unit_of(member, kind)
             key = f"hinges: {HINGE_NOTES.get(identifier, 'body.' + member if need == 'ALWAYS' else member)}"
             required = "each body" if need == "ALWAYS" else ""
-            found[identifier] = (key, unit, HINGE_ITEMS.get(identifier, "body"), required)
+            found[identifier] = (key, unit_of(member, kind), HINGE_ITEMS.get(identifier, "body"), required)
     return found
 
 

@@ -9,7 +9,7 @@ from laconic.base.paths import IS_WHEEL
 from laconic.errors import BadInput
 
 DISTRIBUTIONS = {"can": "python-can", "e2e": "autosar-e2e", "flint": "python-flint", "rerun": "rerun-sdk",
-                 "serial": "pyserial", "zenoh": "eclipse-zenoh"}
+                 "serial": "pyserial", "wpilib": "robotpy", "wpimath": "robotpy", "zenoh": "eclipse-zenoh"}
 """Modules whose distribution has another name."""
 
 

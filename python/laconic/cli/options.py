@@ -6,6 +6,7 @@ Every argument that names a file has one of the types below, so that no command 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,17 @@ class RerunTarget(click.ParamType[Path]):
 
 
 def recorded_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options of a run that others look at: --bag, --storage, --foxglove, --rerun."""
+    """The options of a run that others look at: --bag, --storage, --foxglove, --rerun, together as `recorded`."""
+
+    @wraps(command)
+    def recording(*words: Any, bag: Path | None, storage: str | None, foxglove: Path | None, rerun: Path | None,
+                  **more: Any) -> Any:
+        from laconic.pictures.views.recorded import Recorded
+
+        check_storage(bag, storage)
+        return command(*words, recorded=Recorded(bag, storage, foxglove, rerun), **more)
+
+    found: Callable[..., Any] = recording
     for option in (
             click.option("--rerun", type=RerunTarget(), is_flag=False, flag_value="", metavar="[FILE.rrd]",
                          help="Show the run in the viewer of Rerun, or write it for it."),
@@ -79,8 +90,8 @@ def recorded_options(command: Callable[..., Any]) -> Callable[..., Any]:
                          help="Of the folder that --bag names.  [default: sqlite3]"),
             click.option("--bag", type=OutputBag(), metavar="BAG",
                          help="Write the run as topics of ROS 2: FILE.mcap, or a new folder for a rosbag2.")):
-        command = option(command)
-    return command
+        found = option(found)
+    return found
 
 
 def check_storage(bag: Path | None, storage: str | None) -> None:

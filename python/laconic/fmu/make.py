@@ -25,9 +25,9 @@ DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 VERSIONS = (2, 3)  # of FMI
 
 
-def generic_fmu(version: int, derivatives: bool = False, estimate: bool = False, hinges: bool = False) -> Path:
-    """The FMU that the build made."""
-    variant = "Derivatives" if derivatives else "Estimate" if estimate else "Articulated" if hinges else ""
+def generic_fmu(version: int, derivatives: bool = False, estimate: bool = False, hinged: str = "") -> Path:
+    """The FMU that the build made; `hinged` is "Articulated" or "Slipping" for a vehicle with hinges."""
+    variant = "Derivatives" if derivatives else "Estimate" if estimate else hinged
     return built(f"fmu/Laconic{variant}_fmi{version}.fmu")
 
 
@@ -68,7 +68,8 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     `version` of FMI, 2 or 3, is what the importing tool reads: there is no default, as each tool reads one or both.
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
     `estimate`: for Co-Simulation alone, with outputs of how far the run is from the true motion.
-    A scene with hinges gives another FMU, which has no such variants and no limits of hinges (`hinges.left_out`).
+    A scene with hinges gives another FMU, which has no such variants and no limits of hinges (`hinges.left_out`); on
+    ground with friction one for Co-Simulation alone.
     """
     check_scene(scene)
     scalar, sources = flag("scalar", scalar), flag("sources", sources)
@@ -88,11 +89,12 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
     values = _values_of(scene, estimate)
     content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}", values)
-    generic = generic_fmu(version, derivatives, estimate, scene.has_hinges)
+    hinged = "Slipping" if scene.slips_on_hinges else "Articulated" if scene.has_hinges else ""
+    generic = generic_fmu(version, derivatives, estimate, hinged)
     source = hinges.DESCRIPTION if scene.has_hinges else DESCRIPTION
     with whole_file(path) as fresh:
-        scene_fmu(generic, source, content, fresh, Variant(version, scalar, enumerations, sources, derivatives),
-                  vehicle_parts)
+        scene_fmu(generic, source, content, fresh, Variant(version, scalar, enumerations, sources, derivatives,
+                                                           scene.slips_on_hinges), vehicle_parts)
     return path
 
 

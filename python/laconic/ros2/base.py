@@ -285,14 +285,13 @@ def across_row(wheels: Sequence[dict[str, Any]]) -> np.ndarray:
     return np.mean(np.array(rows) * np.array(signs)[:, np.newaxis], axis=0, keepdims=True)
 
 
-def loop_of(scene: Scene, table: BaseTable) -> Loop:
-    """Gains of the scene, or those of a first-order loop; a wheel without a motor has none."""
-    driven = driven_wheels(scene)
-    return loop_with(scene, table, driven, scene.c_vehicle(scene.core()), moved_inertia(scene, driven))
-
-
-def loop_with(scene: Scene, table: BaseTable, driven: Sequence[bool], vehicle: Any, inertia: Sequence[float]) -> Loop:
-    """The same for a laconic_vehicle, and the inertia that each of its wheels turns."""
+def loop_of(scene: Scene, table: BaseTable, radius_m: Sequence[float] | None = None) -> Loop:
+    """Gains of the scene, or those of a first-order loop; a wheel without a motor has none. `radius_m`: as in
+    `moved_inertia`."""
+    core, driven = scene.core(), driven_wheels(scene)
+    inertia = moved_inertia(scene, [*driven, *[False] * len(scene.hinges)], radius_m)
+    whole = scene.articulated_vehicle(core) if scene.has_hinges else None  # owns the memory of its base
+    vehicle = whole.c.base if whole else scene.c_vehicle(core)
     bandwidth = min(BANDWIDTH_RAD_PER_S, SHARE_OF_STEP / scene.run.step_s)
     is_voltage = has_motor(scene.vehicle)
     gains, integrals = np.zeros((2, scene.wheel_count, 1))

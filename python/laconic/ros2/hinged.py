@@ -12,10 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from laconic.can.play.vehicle import about_hinge
 from laconic.core import Core
 from laconic.core.articulated import ArticulatedMotion, ArticulatedPlant
 from laconic.errors import BadInput, Refused
-from laconic.ros2.base import Base, Loop, Odometry, driven_wheels, loop_with
+from laconic.ros2.base import Base, Loop, Odometry, driven_wheels, loop_of
 from laconic.ros2.chassis import STRAIGHT, Chassis, Steered
 from laconic.ros2.motion import Motion, Seen
 from laconic.scene import Scene
@@ -24,7 +25,7 @@ from laconic.scene.hinge_signals import RATE, TWIST, VOLTAGE
 from laconic.scene.hinges import Hinge
 from laconic.simulation.articulated import follow_rows, start_plant
 from laconic.simulation.loads import Loads, centre_of
-from laconic.simulation.steering import Commands
+from laconic.simulation.steering import Commands, LiveInputs
 
 STEERING_RAD_PER_S = 10.0    # of a hinge whose scene gives no limit, as small servos have
 BANDWIDTH_RAD_PER_S = 8.0    # of a steering motor's controller, which is damped critically
@@ -35,18 +36,6 @@ AROUND_RAD = 0.1             # the same on the way to another twist
 SHARE = 1.0 - 1e-9           # of a rate limit, for the same reason
 HALVINGS = 30
 MARGIN_S = 0.02              # between looks at what the ground must give
-
-
-class LiveInputs:
-    """Inputs of the coming step, in the place of those that a scene gives for a run."""
-
-    def __init__(self, signals: Sequence[str], step_s: float):
-        self.signals, self.step_s = tuple(signals), step_s
-        self.values = np.zeros(len(signals))
-
-    def samples(self, first: int, count: int) -> np.ndarray:
-        """The same at start, middle and end of each step."""
-        return np.broadcast_to(self.values, (count, 3, len(self.values)))
 
 
 class Steering:
@@ -167,8 +156,7 @@ class Steering:
         """P [V/rad] and D [V·s/rad] of a steering motor."""
         body = scene.vehicle["body"][at]
         gain, bandwidth = body["gain_Nm_per_V"], min(BANDWIDTH_RAD_PER_S, 0.1 / self.step_s)
-        arm_m = math.hypot(body.get("com_x_m", 0.0), body.get("com_y_m", 0.0))
-        inertia = body["yaw_inertia_kgm2"] + body["mass_kg"] * arm_m**2
+        inertia = about_hinge(body)
         damping = max(2.0 * bandwidth * inertia - body.get("damping_Nms", 0.0), 0.0)
         stiffness = bandwidth * max(bandwidth * inertia, 0.5 * body.get("damping_Nms", 0.0))
         return stiffness / gain, damping / gain
@@ -346,8 +334,7 @@ class HingedBase(Base):
         if not self._measured.any():
             raise BadInput(f"{scene.path}: vehicle.wheel: no driven wheel is on the carriage or on what steers, so no "
                            "command can move the robot; give one with driven = true")
-        loop = loop_with(scene, table, driven, scene.articulated_vehicle(scene.core()).c.base,
-                         _inertia(scene, driven, self.believed.radius_m))
+        loop = loop_of(scene, table, self.believed.radius_m.tolist())
         self.loop, self._steering_signals = loop, Steering(self.believed, scene, table).signals
         self._rate_limit = np.full(robots, math.inf)
         self._own_ramps = np.full(robots, math.inf)
@@ -434,18 +421,6 @@ class HingedBase(Base):
 
     def _inputs(self, given: np.ndarray) -> np.ndarray:
         return np.concatenate([given[:, 0], self.motion.robots[0].live.values[self.wheel_count :]])
-
-
-def _inertia(scene: Scene, driven: Sequence[bool], radius_m: np.ndarray) -> list[float]:
-    """As `moved_inertia`, with the mass of all bodies."""
-    vehicle = scene.vehicle
-    mass_kg = vehicle["mass_kg"] + vehicle.get("payload", {}).get("mass_kg", 0.0) + sum(
-        body["mass_kg"] for body in vehicle["body"])
-    rotor = vehicle.get("motor", {})
-    reflected = rotor.get("gear_ratio", 0.0)**2 * rotor.get("rotor_inertia_kgm2", 0.0)
-    return [wheel.get("inertia_kgm2", vehicle["wheel_inertia_kgm2"]) + reflected
-            + mass_kg * float(radius)**2 / sum(driven) if is_driven else 0.0
-            for wheel, is_driven, radius in zip(vehicle["wheel"], driven, radius_m, strict=True)]
 
 
 def base_of(scene: Scene, robots: int = 1) -> Base:

@@ -1,10 +1,11 @@
-"""`[base]`: what a mobile base has between velocity commands and its motors; `laconic ros2` plays it.
+"""What is between commands and motors: `[base]`, which `laconic ros2` plays, and `[frc]`, which laconic.frc plays.
 
-What is not given gets its value in laconic.ros2.base, where the vehicle's matrices are known.
+What `[base]` does not give gets its value in laconic.ros2.base, where the vehicle's matrices are known.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -99,3 +100,89 @@ def _names(table: Table, wheels: int, hinges: int) -> tuple[str, ...]:
         both = f", or {wheels + hinges} with the hinges" if hinges else ""
         table.fail("joint_names", f"needs a name of its own for each of the {wheels} wheels; give {wheels} names{both}")
     return names
+
+
+# ---- a robot of the FIRST Robotics Competition
+
+PORTS = {"PWM": 19, "Encoder": 25, "AnalogInput": 7, "AnalogEncoder": 7, "AnalogGyro": 1, "ADXRS450": 4,
+         "DutyCycleEncoder": 25}
+"""Devices of WPILib by their numbers, and the largest number."""
+OUTPUTS = ("PWM", "CANMotor", "SimDevice")
+COUNTERS = ("Encoder", "DutyCycleEncoder", "AnalogEncoder", "AnalogInput", "CANEncoder", "CANDutyCycle", "SimDevice")
+GYROS = ("AnalogGyro", "ADXRS450", "CANGyro", "SimDevice")
+DEVICE = re.compile(r"(?P<reversed>-?)(?P<kind>\w+)(\[(?P<number>\d+)\]|:(?P<name>[^/]+?)(/(?P<value>[^/]+))?)")
+
+
+@dataclass(frozen=True)
+class Device:
+    """A device of WPILib's simulation, as `[frc]` names it."""
+
+    text: str      # as in the file
+    kind: str      # PWM, Encoder, … by name or by number
+    name: str      # PWM and the like: the number
+    value: str     # of a SimDevice
+    sign: float    # -1: it turns the other way
+
+
+@dataclass(frozen=True)
+class FrcTable:
+    """The values of `[frc]`; without devices a list is empty."""
+
+    battery_V: float = 12.0                              # noqa: N815
+    battery_resistance_ohm: float = 0.02
+    current_limit_A: float | None = None                 # noqa: N815
+    steering_current_limit_A: float | None = None        # noqa: N815
+    drive: tuple[Device, ...] = ()
+    drive_encoder: tuple[Device, ...] = ()
+    drive_counts: float = 2048.0
+    steering: tuple[Device, ...] = ()
+    steering_encoder: tuple[Device, ...] = ()
+    steering_counts: float = 4096.0
+    gyro: Device | None = None
+
+
+def read_frc(table: Table, vehicle: Mapping[str, Any]) -> FrcTable:
+    """`[frc]` of a vehicle."""
+    wheels, hinges = len(vehicle["wheel"]), len(vehicle.get("body", ()))
+    if not wheels:
+        table.fail("drive", "the vehicle has no wheels to drive; take [frc] out")
+    numbers = {name: read_number(table, name) for name in (
+        "battery_V", "battery_resistance_ohm", "current_limit_A", "steering_current_limit_A", "drive_counts",
+        "steering_counts")}
+    found = FrcTable(
+        **numbers, drive=_devices(table, "drive", OUTPUTS, wheels, "wheels"),
+        drive_encoder=_devices(table, "drive_encoder", COUNTERS, wheels, "wheels"),
+        steering=_devices(table, "steering", OUTPUTS, hinges, "steered wheels"),
+        steering_encoder=_devices(table, "steering_encoder", COUNTERS, hinges, "steered wheels"),
+        gyro=_device(table, "gyro", table.text("gyro"), GYROS) if table.has("gyro") else None)
+    table.done()
+    return found
+
+
+def _devices(table: Table, key: str, kinds: Sequence[str], count: int, of_what: str) -> tuple[Device, ...]:
+    texts = table.texts(key, ())
+    if texts and not count:
+        table.fail(key, f"has no effect: this vehicle has no {of_what}; take it out")
+    if texts and len(texts) != count:
+        table.fail(key, f"names {len(texts)} devices for {count} {of_what}; give one for each, in their order")
+    return tuple(_device(table, key, text, kinds) for text in texts)
+
+
+def _device(table: Table, key: str, text: str, kinds: Sequence[str]) -> Device:
+    match = DEVICE.fullmatch(text)
+    example = f"{kinds[0]}[0]"
+    if not match:
+        table.fail(key, f'"{text}" is not the name of a device; give one such as "{example}", or "-{example}" for one '
+                   "that turns the other way")
+    kind, number = match["kind"], match["number"]
+    if kind not in kinds:
+        table.fail(key, f'"{text}" is not a device for this; give one of {", ".join(kinds)}, such as "{example}"')
+    if (number is not None) != (kind in PORTS):
+        form = f"{kind}[0]" if kind in PORTS else f"{kind}:NAME" + ("/VALUE" if kind == "SimDevice" else "")
+        table.fail(key, f'"{text}": a {kind} is named as "{form}"; write it so')
+    if kind in PORTS and int(number) > PORTS[kind]:
+        table.fail(key, f'"{text}": a roboRIO has {kind} 0 to {PORTS[kind]}; give one of these numbers')
+    if (match["value"] is not None) != (kind == "SimDevice"):
+        table.fail(key, f'"{text}": a SimDevice needs the name of its value, and others have none; write '
+                   '"SimDevice:NAME/VALUE"')
+    return Device(text, kind, number or match["name"], match["value"] or "", -1.0 if match["reversed"] else 1.0)

@@ -1,4 +1,5 @@
-"""`[rig.drives]`: the motor drives between a controller's bus and the wheels, for `laconic play`.
+"""`[rig.drives]`: the motor drives between a controller's bus and the wheels, for `laconic play`; `[ardupilot]`: the
+outputs of an autopilot.
 
 A value is one number for all drives or a list with one for each; what is not given gets its value in
 laconic.can.play.settings, where the protocol and the vehicle's motor are known.
@@ -10,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from laconic.core.inputs import no_such_wheel
+from laconic.errors import nearest_of
 from laconic.scene.hinges import Hinge
 from laconic.scene.keys import DRIVE_NUMBERS, PROTOCOLS, key_of, read_choice, read_number
 from laconic.scene.table import Table
@@ -113,3 +116,65 @@ def _check(table: Table, key: str, value: float) -> None:
         table.fail(key, f"is {value:g}; give a size from {least:g} to {most:g}")
     if key == "encoder_counts" and (value != int(value) or value > MOST_COUNTS):
         table.fail(key, f"is {value:g}; give a whole number of counts of one turn, up to {MOST_COUNTS}")
+
+
+# ---- outputs of an autopilot
+
+SET_SPEED = "wheel_speed_rad_per_s"
+"""The set speed of a wheel's controller, in the place of an input."""
+USUAL_PULSES_US = (1000.0, 1500.0, 2000.0)
+MOST_CHANNELS = 32
+
+
+@dataclass(frozen=True)
+class Channel:
+    """An output of the autopilot: the inputs that it sets, and their value at the longest pulse."""
+
+    number: int
+    signals: tuple[str, ...]
+    full: float
+
+
+@dataclass(frozen=True)
+class ArduPilotTable:
+    """The values of `[ardupilot]`; None: not given."""
+
+    full_V: float | None = None  # noqa: N815
+    full_speed_rad_per_s: float | None = None
+    full_steering_rad: float | None = None
+    pwm_us: tuple[float, ...] = USUAL_PULSES_US
+    channels: tuple[Channel, ...] = ()
+
+
+def read_ardupilot(table: Table, wheel_count: int, known: Sequence[str]) -> ArduPilotTable:
+    """`[ardupilot]` of a vehicle with these inputs."""
+    numbers = {name: read_number(table, name) for name in ("full_V", "full_speed_rad_per_s", "full_steering_rad")}
+    if numbers["full_V"] and numbers["full_speed_rad_per_s"]:
+        table.fail("full_V", "is given besides full_speed_rad_per_s, so throttle would be two things; keep one of them")
+    channels = tuple(_channel(each, wheel_count, known) for each in table.tables("channel"))
+    for name in numbers if channels else ():
+        if numbers[name]:
+            table.fail(name, "has no effect besides [[ardupilot.channel]], which gives each output its own full value; "
+                       "take it out")
+    pulses = table.numbers("pwm_us", 3) if table.has("pwm_us") else USUAL_PULSES_US
+    if not 0.0 < pulses[0] < pulses[1] < pulses[2]:
+        table.fail("pwm_us", "must rise from above 0: the pulses for -1, 0 and 1, such as [1000, 1500, 2000]")
+    table.done()
+    return ArduPilotTable(**numbers, pwm_us=pulses, channels=channels)
+
+
+def _channel(table: Table, wheel_count: int, known: Sequence[str]) -> Channel:
+    number, signals = table.whole("number"), table.texts("signals")
+    if not 1 <= number <= MOST_CHANNELS:
+        table.fail("number", f"is {number}; give the number of an output, 1 to {MOST_CHANNELS}")
+    if not signals:
+        table.fail("signals", "is empty; name the inputs that this output sets, or take the table out")
+    speeds = [f"{SET_SPEED}[{wheel}]" for wheel in range(1, wheel_count + 1)]
+    for signal in signals:
+        if signal.startswith(f"{SET_SPEED}[") and signal not in speeds:
+            table.fail("signals", no_such_wheel(signal, SET_SPEED, wheel_count))
+        if signal not in (*known, *speeds):
+            table.fail("signals", f"there is no input {signal}; {nearest_of(signal, (*known, *speeds))}")
+    full = read_number(table, "full")
+    table.done()
+    return Channel(number, signals, full)

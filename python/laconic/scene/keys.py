@@ -54,6 +54,7 @@ class Key:
 
 
 A_NUMBER, A_LIST, TEXT = "number", "list of numbers", "text"
+LIST_OF_TEXTS = "list of texts"
 OF_DRIVES = "number, or list with one for each drive"
 PLAY = "see [play](play.md#the-drives)"
 
@@ -115,6 +116,9 @@ TABLES = {
     "speed_controller": "What turned set speeds of the wheels into currents on a recorded robot; for "
                         "`laconic replay --inputs set-speeds` alone. Needs `[vehicle.motor]`.",
     "base": "Controller, limits and beliefs of a mobile base; for [`laconic ros2`](ros2.md) alone.",
+    "frc": "Battery and devices of an FRC robot, by WPILib's names; for [`laconic frc`](frc.md) alone.",
+    "ardupilot": "Outputs of an autopilot; for [`laconic play --ardupilot`](play.md#ardupilot) alone.",
+    "ardupilot.channel[#]": "One output, instead of the usual ones of this kind of vehicle.",
     "rig": "What a CAN bus needs to know; for `laconic rig` and `laconic play`.",
     "rig.drives": f"The motor drives between a controller's bus and the wheels; {PLAY}."}
 """Every table of a scene, in the order of the reference."""
@@ -373,6 +377,32 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
         "Wheel radii as the base believes them, for its set speeds and its odometry", None, "the true ones", POSITIVE),
     Key("base.joint_names", "list of texts", "Of the wheels, and then of the hinges or not, as in the robot's URDF", (),
         "wheel_1_joint …, and the name of a hinge with _hinge_joint"),
+    Key("frc.battery_V", A_NUMBER, "Voltage of the battery without load", 12.0, rule=POSITIVE),
+    Key("frc.battery_resistance_ohm", A_NUMBER, "Of battery and wires; 0: the voltage does not sag", 0.02,
+        rule=NOT_NEGATIVE),
+    Key("frc.current_limit_A", A_NUMBER, "Largest current of all motors of a wheel together", None, "none", POSITIVE),
+    Key("frc.steering_current_limit_A", A_NUMBER, "The same of a motor that steers", None, "none", POSITIVE),
+    Key("frc.drive", LIST_OF_TEXTS, "Output of each wheel: `PWM[0]`, `CANMotor:NAME`; with `-` before it where it "
+        "turns the wheel backwards", (), "none"),
+    Key("frc.drive_encoder", LIST_OF_TEXTS, "Of each wheel: `Encoder[0]` has its channel A on DIO 0; "
+        "`CANEncoder:NAME` …", (), "none"),
+    Key("frc.drive_counts", A_NUMBER, "Counts of an `Encoder` in a turn of the wheel", 2048.0, rule=POSITIVE),
+    Key("frc.steering", LIST_OF_TEXTS, "Output of each motor that steers, in the order of the wheels", (), "none"),
+    Key("frc.steering_encoder", LIST_OF_TEXTS, "`DutyCycleEncoder[0]`, `AnalogEncoder[0]`, `Encoder[0]` …", (), "none"),
+    Key("frc.steering_counts", A_NUMBER, "Counts of an `Encoder` in a turn of the module", 4096.0, rule=POSITIVE),
+    Key("frc.gyro", TEXT, "`AnalogGyro[0]`, `ADXRS450[0]`, `CANGyro:NAME` or `SimDevice:NAME/VALUE`", None, "none"),
+    Key("ardupilot.full_V", A_NUMBER, "Voltage of the motors at full throttle", None,
+        "`vehicle.drive.supply_V`, else `rig.drives.supply_V`", POSITIVE),
+    Key("ardupilot.full_speed_rad_per_s", A_NUMBER, "Instead: full throttle sets this speed, and a controller with the "
+        "gains of `[base]` turns each wheel", None, "throttle is a voltage", POSITIVE),
+    Key("ardupilot.full_steering_rad", A_NUMBER, "Angle at full steering", None, "the least stop of a steered wheel",
+        POSITIVE),
+    Key("ardupilot.pwm_us", "list of 3 numbers", "Pulses for −1, 0 and 1: SERVOn_MIN, TRIM, MAX",
+        (1000.0, 1500.0, 2000.0)),
+    Key("ardupilot.channel[#].number", "whole number", "SERVO1 is 1", range="1 to 32"),
+    Key("ardupilot.channel[#].signals", "list of texts", "Inputs that the output sets; `wheel_speed_rad_per_s[i]` is "
+        "the set speed of a controller. Outputs of one signal add up"),
+    Key("ardupilot.channel[#].full", A_NUMBER, "Their value at the longest pulse; below 0: reversed", rule=NOT_ZERO),
     Key("rig.id_base", "whole number", "First CAN identifier of the node", None, "the node's own", range="0 to 0x7FF"),
     Key("rig.frames", "list of texts", "Frames of [the wire](wire.md) that the node sends", (), "the usual ones"),
     Key("rig.drives.protocol", TEXT, "What the drives speak", None, "that of `--drives`", choices=PROTOCOLS),

@@ -12,8 +12,8 @@ from laconic.core.articulated import CARRIAGE, method_names
 from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
-from laconic.scene.base import read_base
-from laconic.scene.drives import read_drives
+from laconic.scene.base import read_base, read_frc
+from laconic.scene.drives import read_ardupilot, read_drives
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground, slips
@@ -67,6 +67,9 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["sensors"],
                                     parts["run"]["duration_s"])
     parts["base"] = read_base(top.table("base"), parts["vehicle"]) if top.has("base") else None
+    parts["frc"] = read_frc(top.table("frc"), parts["vehicle"]) if top.has("frc") else None
+    parts["ardupilot"] = read_ardupilot(top.table("ardupilot"), wheel_count, list(signal_names(
+        LENGTHS, PER_WHEEL, wheel_count))) if top.has("ardupilot") else None
     parts["hinges"], parts["wheel_places"] = (), ()
     parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
@@ -95,6 +98,9 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     signals = read_hinge_signals(outputs, output_signals_of(vehicle, hinges))
     parts["outputs"] = read_interval(outputs, signals, parts["run"]["duration_s"])
     parts["base"] = read_base(top.table("base"), vehicle) if top.has("base") else None
+    parts["frc"] = read_frc(top.table("frc"), vehicle) if top.has("frc") else None
+    parts["ardupilot"] = read_ardupilot(
+        top.table("ardupilot"), len(vehicle["wheel"]), list(known)) if top.has("ardupilot") else None
     parts["sensors"] = NO_SENSORS
     parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges)
     top.done()

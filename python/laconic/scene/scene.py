@@ -19,8 +19,8 @@ from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
 from laconic.core.slipping import SlippingVehicle
 from laconic.errors import BadInput, Refused
-from laconic.scene.base import BaseTable
-from laconic.scene.drives import Drives
+from laconic.scene.base import BaseTable, FrcTable
+from laconic.scene.drives import ArduPilotTable, Drives
 from laconic.scene.ground import slips
 from laconic.scene.hinges import Hinge, check_without_hinges, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
@@ -113,6 +113,8 @@ class Scene:
     speed_controller: SpeedController | None = None
     sensors: SensorTables = NO_SENSORS
     base: BaseTable | None = None
+    frc: FrcTable | None = None
+    ardupilot: ArduPilotTable | None = None
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
     hinges: tuple[Hinge, ...] = ()  # of bodies besides the carriage, in the order of vehicle["body"]
     wheel_places: tuple[str, ...] = ()  # with hinges: the table of each wheel in the file
@@ -291,8 +293,8 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], base=parts["base"], in_degrees=parts["in_degrees"],
-        hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
+        sensors=parts["sensors"], base=parts["base"], frc=parts["frc"], ardupilot=parts["ardupilot"],
+        in_degrees=parts["in_degrees"], hinges=parts["hinges"], wheel_places=parts["wheel_places"]))
 
 
 def with_found_step(scene: Scene) -> Scene:

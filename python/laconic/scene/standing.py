@@ -75,7 +75,11 @@ def why_it_tips(vehicle: Mapping[str, Any]) -> str:
     points = np.array([(each["x_m"], each["y_m"]) for each in (*vehicle["wheel"], *vehicle["support"])], float)
     names = [*(f"wheel {i}" for i in range(1, len(vehicle["wheel"]) + 1)),
              *(f"support {i}" for i in range(1, len(vehicle["support"]) + 1))]
-    centre = _centre(vehicle)
+    return why_points_tip(points, names, _centre(vehicle))
+
+
+def why_points_tip(points: np.ndarray, names: Sequence[str], centre: np.ndarray) -> str:
+    """Empty where the centre, shape (2,), lies above the polygon of points, shape (n, 2)."""
     if (line := _one_line(points)) is not None:
         off_mm = 1e3 * abs(float(np.cross([*line[1], 0.0], [*(centre - line[0]), 0.0])[2]))
         where = "on one point" if len(points) == 1 else f"in one line ({_listed(names)})"

@@ -25,6 +25,7 @@ from laconic.scene.hinge_signals import (
 )
 from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
+from laconic.scene.standing import NO_LOAD
 from laconic.scene.table import Table
 from laconic.simulation.kept_rows import KeptRows, parts_of
 from laconic.simulation.loads import Loads
@@ -169,6 +170,8 @@ class Rows(KeptRows):
         reactions = None
         if self._of_ground or self._of_load:
             loads = self._loads.of(motion) if self._of_load else None
+            if loads is not None:
+                self.see_lifted(loads < -NO_LOAD * loads.sum(), tick * self._inputs.step_s)
             reactions = plant.reactions(row, loads)
         if self._of_load and reactions and (self.least_margin is None
                                             or reactions.no_slip_margin_N < self.least_margin[0]):

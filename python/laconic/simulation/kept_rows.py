@@ -52,6 +52,12 @@ class KeptRows:
 
     def __init__(self, kept: Sequence[str], trailers: Sequence[tuple[int, str]]):
         self.kept, self._rows, self._folds = kept, list[list[float]](), Folds(trailers)
+        self.lifted: tuple[int, float] | None = None  # the first wheel that carries nothing, from 1; and when, in s
+
+    def see_lifted(self, carry_nothing: np.ndarray, time_s: float) -> None:
+        """Keeps the first wheel that does, shape (N,)."""
+        if self.lifted is None and carry_nothing.any():
+            self.lifted = int(np.argmax(carry_nothing)) + 1, time_s
 
     def __len__(self) -> int:
         return len(self._rows)

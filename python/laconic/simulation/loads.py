@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from laconic.core.articulated import CARRIAGE, ArticulatedMotion
 from laconic.scene import Scene
+from laconic.scene.standing import NO_LOAD, Standing, why_points_tip
 
 GRAVITY_M_PER_S2 = 9.80665
 Frame = tuple[complex, complex]  # origin and direction in the world
@@ -38,6 +39,8 @@ class Loads:
     def __init__(self, scene: Scene):
         vehicle, names = scene.vehicle, [CARRIAGE, *(hinge.name for hinge in scene.hinges)]
         forms = ["", *(hinge.form for hinge in scene.hinges)]
+        self._names = names
+        self._hinges = [complex(body["hinge_x_m"], body["hinge_y_m"]) for body in vehicle["body"]]
         self._centre = centre_of(vehicle)
         self._parents = [0, *(names.index(body["parent"]) for body in vehicle["body"])]
         self._group = [0] * len(names)  # the trailer, or the carriage, with which a body stands
@@ -60,7 +63,30 @@ class Loads:
 
     def of(self, motion: ArticulatedMotion) -> np.ndarray:
         """The load of each wheel [N], shape (N,)."""
-        frames, loads = self._frames(motion), np.zeros(len(self._wheels))
+        return self._carried(self._frames(motion))[0]
+
+    def standing(self, angles_rad: Sequence[float]) -> Standing:
+        """How it stands with its hinges at these angles, and why it tips, or a trailer of it."""
+        frames = self._frames_at(angles_rad)
+        wheels, supports, weights = self._carried(frames)
+        least = NO_LOAD * sum(newtons for _, newtons in weights)
+        for g, of_group in self._of_group.items():
+            for i in of_group if g else ():
+                if wheels[i] < -least:
+                    return Standing(tuple(wheels), tuple(supports),
+                                    f"{self._names[g]} tips: wheel {i + 1} would have to pull with {-wheels[i]:.3g} N; "
+                                    "move its centre of mass between its wheels and the hitch")
+        of_carriage = self._of_group.get(0, [])
+        points = [_at(frames[b], place) for b, place in (self._wheels[i] for i in of_carriage)]
+        points += [_at(frames[0], place) for place in self._supports]
+        names = [*(f"wheel {i + 1}" for i in of_carriage), *(f"support {k + 1}" for k in range(len(self._supports)))]
+        middle = sum((place * newtons for place, newtons in weights), 0j) / sum(newtons for _, newtons in weights)
+        tips = why_points_tip(np.array([(p.real, p.imag) for p in points]), names, np.array([middle.real, middle.imag]))
+        return Standing(tuple(wheels), tuple(supports), tips)
+
+    def _carried(self, frames: list[Frame]) -> tuple[np.ndarray, np.ndarray, Weights]:
+        """Loads of wheels and supports, and what the carriage with its supports and wheels carries."""
+        loads, supports = np.zeros(len(self._wheels)), np.zeros(len(self._supports))
         weights: dict[int, Weights] = {g: [] for g in self._of_group}
         for frame, g, (place, newtons) in zip(frames, self._group, self._weights, strict=True):
             weights[g].append((_at(frame, place), newtons))
@@ -70,9 +96,18 @@ class Loads:
             points += [frames[g][0]] if g else [_at(frames[0], place) for place in self._supports]
             shares = _shares(points, weights[g])
             loads[wheels] = shares[: len(wheels)]
-            if g:
+            if not g:
+                supports = shares[len(wheels):]
+            else:
                 weights[self._group[self._parents[g]]].append((frames[g][0], float(shares[-1])))
-        return loads
+        return loads, supports, weights[0]
+
+    def _frames_at(self, angles_rad: Sequence[float]) -> list[Frame]:
+        """Those of bodies whose carriage stands at the origin."""
+        found = [(0j, 1.0 + 0j)]
+        for parent, hinge, angle in zip(self._parents[1:], self._hinges, angles_rad, strict=True):
+            found.append((_at(found[parent], hinge), found[parent][1] * cmath.rect(1.0, angle)))
+        return found
 
     def _frames(self, motion: ArticulatedMotion) -> list[Frame]:
         """That of each body."""

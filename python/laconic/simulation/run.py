@@ -69,6 +69,7 @@ class Trajectory:
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
     limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
     folded: tuple[Folded, ...] = ()  # with hinges: trailers that turned by more than a right angle
+    lifted: tuple[int, float] | None = None  # with hinges: the first wheel that carried nothing, and when in s
     least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
     slip_loss_J: float | None = None  # with hinges where wheels may slip: what slip and scrub took
 
@@ -248,7 +249,8 @@ def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, e
     if found.refused and len(rows):
         ticks[-1] = plant.steps
     run = Trajectory(scene, plant.method, plant.steps, found.seconds, ticks * scene.run.step_s, rows.columns(),
-                     refused=found.refused, limited=tuple(found.commands.limited.values()), folded=rows.folded)
+                     refused=found.refused, limited=tuple(found.commands.limited.values()), folded=rows.folded,
+                     lifted=rows.lifted)
     if isinstance(rows, Rows):
         run.least_margin = rows.least_margin
     if isinstance(plant, SlippingPlant):

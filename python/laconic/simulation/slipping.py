@@ -27,6 +27,7 @@ from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
 CHUNK = 2048  # steps whose inputs are made ready at once
+LIFTED = 2    # a contact_state
 MIDDLE = 1    # of the samples of a step: start, middle, end
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
          "hinge_rate_rad_per_s", "hinge_reaction_Nm", "wheel_speed_rad_per_s", "wheel_angle_rad", "slip_along_m_per_s",
@@ -132,6 +133,7 @@ class SlippingRows(KeptRows):
         """The outputs at the start of a step, in which `row` acts; forces are those of the step before."""
         found = plant.outputs()
         self._folds.take(found.motion.hinge_angle_rad, tick * self._inputs.step_s)
+        self.see_lifted(found.contact_state == LIFTED, tick * self._inputs.step_s)
         given = self._inputs.held_at(tick) if self._of_commands else {}
         values = [read(found, row, given) for read in self._values]
         for name, at in self._place.items():

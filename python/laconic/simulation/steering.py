@@ -59,6 +59,18 @@ class Samples(Protocol):
         """Values (step, start|middle|end, signal) of some steps."""
 
 
+class LiveInputs:
+    """Inputs of the coming step, in the place of those that a scene gives for a run."""
+
+    def __init__(self, signals: Sequence[str], step_s: float):
+        self.signals, self.step_s = tuple(signals), step_s
+        self.values = np.zeros(len(signals))
+
+    def samples(self, first: int, count: int) -> np.ndarray:
+        """The same at start, middle and end of each step."""
+        return np.broadcast_to(self.values, (count, 3, len(self.values)))
+
+
 @dataclass
 class Commands:
     """The rows of inputs of a run, in order; `limited` fills as they are made, `refused` says what ends the run."""
@@ -345,7 +357,8 @@ class _Steering:
         if not 0.0 < largest < math.inf:
             return np.zeros(3)
         scaled = twist / largest
-        return np.asarray(scaled / np.linalg.norm(scaled * (1.0, 1.0, self._size_m)))
+        ahead, aside, yaw = (scaled * (1.0, 1.0, self._size_m)).tolist()
+        return np.asarray(scaled / math.sqrt(ahead * ahead + aside * aside + yaw * yaw))  # the same bits everywhere
 
     def _directions(self, twist: np.ndarray) -> np.ndarray:
         """Velocity at each hinge as a complex number, for one twist or many."""

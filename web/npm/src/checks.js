@@ -51,6 +51,12 @@ export function askFlag(/** @type {string} */ path, /** @type {unknown} */ given
   throw new Refused(path, `${toldOf(given)} is neither true nor false; give one of them`, "not a boolean");
 }
 
+/** A number of steps. */
+export function askSteps(/** @type {unknown} */ given) {
+  if (Number.isSafeInteger(given) && Number(given) >= 0) return Number(given);
+  throw new Refused("steps", `${toldOf(given)} is no whole number of steps; give 0 or more`, "not a whole number");
+}
+
 /** A number, of which the core judges what it refuses itself, NaN too. */
 export function askNumber(/** @type {string} */ path, /** @type {unknown} */ given, remedy = "give one") {
   if (typeof given !== "number") throw new Refused(path, `${toldOf(given)} is no number; ${remedy}`, "not a number");

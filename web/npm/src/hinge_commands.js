@@ -82,7 +82,7 @@ export class Commands {
   begin(/** @type {Hinge[]} */ hinges) {
     this.angles = new Map(hinges.map(({ name, angle }) => [name, angle]));
     this.limited.clear();
-    this.twist = this.isLimited ? this.unit(this.wanted) : this.wanted;
+    this.twist = this.goal();
     if (!this.isLimited || isZero(this.twist)) return;
     this.takeAngles();
     const beyond = this.coordinated.some((hinge) => !isBetween(hinge, this.angle(hinge), OF_ANGLE));
@@ -159,7 +159,7 @@ export class Commands {
     if (Math.abs(wanted) > hinge.rateLimit * (1 + ROUNDING))
       this.limit(hinge, "rate", time_s, Math.abs(wanted), hinge.rateLimit);
     const isReached = target !== undefined && rate === wanted,
-      end = isReached ? within(target, hinge.low, hinge.high) : angle + 0.5 * h * (rate + rate),
+      end = isReached ? within(target, hinge.low, hinge.high) : angle + h * rate,
       stop = within(end, hinge.low, hinge.high);
     if (Math.abs(stop - end) > OF_ANGLE) {
       this.limit(hinge, "angle", time_s, end, stop);

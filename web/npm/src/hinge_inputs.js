@@ -1,22 +1,12 @@
 // What acts on a vehicle with hinges, by names: checked, so that a refused input changes nothing.
 import { askFinite, askKeys, askNumbers, askTable } from "./checks.js";
 import { CARRIAGE } from "./hinge_tables.js";
+import { PLAIN_INPUTS, plainValues } from "./inputs.js";
 import { Refused } from "./refused.js";
 import { inPlace } from "./scene.js";
 
 /** @typedef {import("./hinge_tables.js").Hinge} Hinge */
 
-/** How many numbers an input has: 0, one without a list; WHEELS, one for each wheel. */
-const WHEELS = -1;
-/** @type {Record<string, number>} */
-const PLAIN_INPUTS = {
-  voltage_V: WHEELS,
-  axle_torque_Nm: WHEELS,
-  body_force_N: 2,
-  body_moment_Nm: 0,
-  world_force_N: 2,
-  world_force_point_m: 2,
-};
 /** Inputs by the names of hinges: which kinds have them. @type {Record<string, string[]>} */
 const HINGE_INPUTS = {
   hinge_voltage_V: ["motor"],
@@ -25,7 +15,7 @@ const HINGE_INPUTS = {
   steering_angle_rad: ["prescribed"],
 };
 const STEERING = ["steering_twist", "steering_curvature_per_m", "steering_angle_rad"]; // of coordinated hinges
-const INPUTS = [...new Set([...Object.keys(PLAIN_INPUTS), ...Object.keys(HINGE_INPUTS), ...STEERING])];
+const HINGED_INPUTS = [...new Set([...Object.keys(PLAIN_INPUTS), ...Object.keys(HINGE_INPUTS), ...STEERING])];
 const ACROSS = 1e-9; // of an axle's direction: rounding
 
 export class InputReader {
@@ -42,12 +32,12 @@ export class InputReader {
 
   /** An input by its parts. */
   read(/** @type {any} */ input) {
-    askKeys("", askTable("input", input, `give an object with any of ${INPUTS.join(", ")}`), INPUTS);
+    askKeys("", askTable("input", input, `give an object with any of ${HINGED_INPUTS.join(", ")}`), HINGED_INPUTS);
     const { steering_angle_rad: angle } = input,
       isOfAll = typeof angle === "number";
     const plain = Object.keys(PLAIN_INPUTS)
       .filter((name) => name in input)
-      .map((name) => ({ name, values: this.plainValues(name, input[name]), isOne: PLAIN_INPUTS[name] === 0 }));
+      .map((name) => ({ name, values: plainValues(name, input[name], this.wheelCount), isOne: PLAIN_INPUTS[name] === 0 }));
     const byName = (/** @type {string} */ name) =>
       name in input && !(name === "steering_angle_rad" && isOfAll) ? this.byName(name, input[name]) : {};
     const rates = byName("steering_rate_rad_per_s"),
@@ -63,14 +53,6 @@ export class InputReader {
     }
     const named = ["hinge_voltage_V", "hinge_torque_Nm"].map((name) => ({ name, numbers: byName(name) }));
     return { plain, named, rates, targets, twist: this.twistOf(input, isOfAll) };
-  }
-
-  plainValues(/** @type {string} */ name, /** @type {any} */ given) {
-    const count = PLAIN_INPUTS[name];
-    if (count === 0) return [askFinite(name, given)];
-    return count === WHEELS
-      ? askNumbers(name, given, this.wheelCount, "one for each wheel")
-      : askNumbers(name, given, count, "along x and along y");
   }
 
   /** Numbers by the names of hinges that have such an input. @returns {Record<string, number>} */

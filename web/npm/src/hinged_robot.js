@@ -1,16 +1,16 @@
 // One vehicle with hinges: made of a scene, stepped with an input held, read by its outputs.
-import { askFinite, askKeys, askNumber, askNumbers, askTable, toldOf } from "./checks.js";
+import { askFinite, askKeys, askNumber, askNumbers, askSteps, askTable } from "./checks.js";
+import { Handle } from "./handle.js";
 import { Commands, isBetween, isStopped } from "./hinge_commands.js";
 import { InputReader, axleOf } from "./hinge_inputs.js";
 import { CARRIAGE, HINGE_KINDS, inTables, readHinges } from "./hinge_tables.js";
-import { Module } from "./module.js";
 import { Refused } from "./refused.js";
 import { SceneSetter, inRad } from "./scene.js";
 
 /** @typedef {import("./hinge_tables.js").Hinge} Hinge */
 
 const ALLOWED = 1e-9; // of the size of a start: what rounding may change of it
-const START = ["velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
+const HINGED_START = ["velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
 const WITHOUT_NUMBERS = ["name", "parent", "hinge"];
 const PER_WHEEL = /^(?:wheel|along|lateral|brake)_/;
 const REACTIONS = ["wheel_torque_Nm", "along_N", "lateral_N", "brake_Nm", "hinge_torque_Nm", "hinge_force_N"];
@@ -58,21 +58,17 @@ function checkIdeal(/** @type {any} */ { ground, vehicle, initial }) {
       "does not act on vehicles with hinges yet; take it out for a ground that holds every wheel",
       "not yet",
     );
-  if (initial !== undefined) askKeys("initial", inRad("initial", initial), START);
+  if (initial !== undefined) askKeys("initial", inRad("initial", initial), HINGED_START);
 }
 
 /** A vehicle with hinges at its start. Call free() when it is no longer needed: its memory is used again. */
-export class HingedRobot {
-  #pointer = 0;
+export class HingedRobot extends Handle {
   /** @type {any} what acts, as checked */
   #input = { plain: [], named: [], rates: {}, targets: {}, twist: undefined };
 
   /** @param {import("./module.js").Module} module @param {any} scene @param {string} method @param {number} step_s */
   constructor(module, scene, method, step_s) {
-    if (!(module instanceof Module))
-      throw new Refused("", "a robot is made by robot() of what load() gives", "not loaded");
-    this.module = module;
-    this.c = module.c;
+    super(module);
     askTable("vehicle", scene.vehicle, "give an object with mass_kg and the vehicle's other keys");
     const found = readHinges(scene.vehicle);
     this.hinges = found.hinges;
@@ -88,20 +84,7 @@ export class HingedRobot {
       ["free", "motor"].includes(hinge.kind) && isStopped(hinge) ? [hinge] : [],
     );
     this.acting = this.ordered.rest();
-    this.#pointer = this.c.laconic_web_new();
-    if (!this.#pointer) throw new RangeError("no memory for another robot; free some");
-    try {
-      this.begin(scene, found, method);
-    } catch (refused) {
-      this.free();
-      throw refused;
-    }
-  }
-
-  /** Its place in the module's memory; Refused after free(), since another robot may be there. */
-  get pointer() {
-    if (!this.#pointer) throw new Refused("robot", "was freed; make another by robot()", "freed");
-    return this.#pointer;
+    this.take(() => this.begin(scene, found, method));
   }
 
   /** @param {any} scene @param {ReturnType<typeof readHinges>} found @param {string} method */
@@ -220,9 +203,7 @@ export class HingedRobot {
   /** Takes steps with the input held. */
   run(/** @type {number} */ steps) {
     const { pointer } = this;
-    if (!Number.isSafeInteger(steps) || steps < 0)
-      throw new Refused("steps", `${toldOf(steps)} is no whole number of steps; give 0 or more`, "not a whole number");
-    for (let left = steps; left > 0; ) {
+    for (let left = askSteps(steps); left > 0; ) {
       const count = this.ordered.isSettled && !this.watched.length ? Math.min(left, 2 ** 30) : 1;
       if (count > 1) this.runSettled(pointer, count);
       else this.runOne(pointer);
@@ -235,10 +216,21 @@ export class HingedRobot {
     try {
       this.check(this.c.laconic_web_run(pointer, count));
     } finally {
-      const { hinge_angle_rad } = this.outputs();
-      for (const { name } of this.ordered.prescribed)
-        if (!this.ordered.targets.has(name)) this.ordered.angles.set(name, hinge_angle_rad[name]);
+      this.takeAngles(pointer);
     }
+  }
+
+  /** Prescribed hinges at a rate end where the core says. */
+  takeAngles(/** @type {number} */ pointer) {
+    const { prescribed, targets, angles } = this.ordered;
+    if (!prescribed.length) return;
+    const now = this.hingeAngles(pointer);
+    for (const { name } of prescribed) if (!targets.has(name)) angles.set(name, now[name]);
+  }
+
+  /** @returns {Record<string, number>} */
+  hingeAngles(/** @type {number} */ pointer) {
+    return this.read(this.c.laconic_web_outputs(pointer), (name) => name === "hinge_angle_rad").hinge_angle_rad;
   }
 
   runOne(/** @type {number} */ pointer) {
@@ -258,9 +250,9 @@ export class HingedRobot {
   /** A free or motor hinge that comes to its stop ends the run before that step. */
   checkStops(/** @type {number} */ pointer) {
     if (!this.watched.length) return;
-    const { hinge_angle_rad } = this.outputs();
+    const angles = this.hingeAngles(pointer);
     for (const hinge of this.watched) {
-      const angle = hinge_angle_rad[hinge.name];
+      const angle = angles[hinge.name];
       if (isBetween(hinge, angle)) continue;
       this.c.laconic_web_back(pointer);
       const limit = angle < hinge.low ? hinge.low : hinge.high;
@@ -273,14 +265,6 @@ export class HingedRobot {
         limit,
       );
     }
-  }
-
-  get steps() {
-    return this.c.laconic_web_steps(this.pointer);
-  }
-
-  get time_s() {
-    return this.steps * this.step_s;
   }
 
   /** What acts: the twist along which coordinated wheels point, and the rates of prescribed hinges. */
@@ -330,11 +314,5 @@ export class HingedRobot {
     if (name === "velocity_m_per_s" || name === "hinge_force_N") return values;
     if (PER_WHEEL.test(name)) return values.slice(0, this.wheelCount);
     return Object.fromEntries(this.bodies.map((each, k) => [each, values[k]]));
-  }
-
-  /** Gives its memory back; a second time does nothing. */
-  free() {
-    if (this.#pointer) this.c.laconic_web_free(this.#pointer);
-    this.#pointer = 0;
   }
 }

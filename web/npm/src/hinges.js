@@ -2,7 +2,7 @@
 // WebAssembly, apart from the other so that nobody loads what is not needed.
 import { askKeys } from "./checks.js";
 import { HingedRobot } from "./hinged_robot.js";
-import { wasm } from "./hinged_wasm.js";
+import { wasm as hingedWasm } from "./hinged_wasm.js";
 import { Module } from "./module.js";
 import { Refused } from "./refused.js";
 import { hingesIn, runOf } from "./scene.js";
@@ -39,5 +39,5 @@ export class LaconicHinges {
 
 /** Loads the core; every call makes one of its own. */
 export async function load() {
-  return new LaconicHinges(await Module.load(wasm));
+  return new LaconicHinges(await Module.load(hingedWasm));
 }

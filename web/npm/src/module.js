@@ -1,12 +1,20 @@
 // The WebAssembly module, and what it says of itself: fields, methods, outputs.
 const decoder = new TextDecoder();
+const FIRST_OF_GZIP = 0x1f;
 
 /** @param {string} text @returns {Uint8Array<ArrayBuffer>} */
-function bytesOf(text) {
+export function bytesOf(text) {
   const binary = atob(text);
   const bytes = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);
   return bytes;
+}
+
+/** The bytes, or what gzip has made them of, as in the page. @param {Uint8Array<ArrayBuffer>} bytes */
+export async function unpacked(bytes) {
+  if (bytes[0] !== FIRST_OF_GZIP) return bytes;
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
 /** What the core calls its numbers, and where they are. */
@@ -22,7 +30,7 @@ export class Module {
 
   /** @param {string} wasm base64 */
   static async load(wasm) {
-    const { instance, module } = await WebAssembly.instantiate(bytesOf(wasm));
+    const { instance, module } = await WebAssembly.instantiate(await unpacked(bytesOf(wasm)));
     return new Module(instance.exports, module);
   }
 

@@ -1,20 +1,10 @@
 // One robot: made of a scene, stepped with an input held, read by its outputs.
-import { askFinite, askKeys, askNumber, askNumbers, askTable, toldOf } from "./checks.js";
-import { Module } from "./module.js";
+import { askFinite, askKeys, askNumber, askSteps, askTable, toldOf } from "./checks.js";
+import { Handle } from "./handle.js";
+import { PLAIN_INPUTS, plainValues } from "./inputs.js";
 import { Refused } from "./refused.js";
 import { SceneSetter } from "./scene.js";
 
-/** How many numbers an input has: 0, one without a list; WHEELS, one for each wheel. */
-const WHEELS = -1;
-/** @type {Record<string, number>} */
-const INPUTS = {
-  voltage_V: WHEELS,
-  axle_torque_Nm: WHEELS,
-  body_force_N: 2,
-  body_moment_Nm: 0,
-  world_force_N: 2,
-  world_force_point_m: 2,
-};
 const PER_POINT = ["normal_N"];
 const FIRST_OF_FRICTION = "slip_along_m_per_s";
 
@@ -32,29 +22,11 @@ function checkRange(/** @type {number[]} */ found, /** @type {Record<string, num
 }
 
 /** A robot at its start. Call free() when it is no longer needed: its memory is used again. */
-export class Robot {
-  #pointer = 0;
-
+export class Robot extends Handle {
   /** @param {import("./module.js").Module} module @param {any} scene @param {string} method @param {number} step_s */
   constructor(module, scene, method, step_s) {
-    if (!(module instanceof Module))
-      throw new Refused("", "a robot is made by robot() of what load() gives", "not loaded");
-    this.module = module;
-    this.c = module.c;
-    this.#pointer = this.c.laconic_web_new();
-    if (!this.#pointer) throw new RangeError("no memory for another robot; free some");
-    try {
-      this.begin(scene, method, step_s);
-    } catch (refused) {
-      this.free();
-      throw refused;
-    }
-  }
-
-  /** Its place in the module's memory; Refused after free(), since another robot may be there. */
-  get pointer() {
-    if (!this.#pointer) throw new Refused("robot", "was freed; make another by robot()", "freed");
-    return this.#pointer;
+    super(module);
+    this.take(() => this.begin(scene, method, step_s));
   }
 
   /** @param {any} scene @param {string} method @param {number} step_s */
@@ -76,40 +48,23 @@ export class Robot {
   /** Sets what acts from now on; every input that is not given becomes 0. A refused one changes nothing. */
   setInput(/** @type {any} */ input) {
     const pointer = this.pointer,
-      names = Object.keys(INPUTS);
+      names = Object.keys(PLAIN_INPUTS);
     askKeys("", askTable("input", input, `give an object with any of ${names.join(", ")}`), names);
-    const found = Object.entries(input).map(([name, given]) => ({ name, values: this.inputValues(name, given) }));
+    const count = /** @type {number} */ (this.wheelCount);
+    const found = Object.entries(input).map(([name, given]) => ({ name, values: plainValues(name, given, count) }));
     this.c.laconic_web_clear_input(pointer);
     for (const { name, values } of found) {
-      const isOne = INPUTS[name] === 0;
+      const isOne = PLAIN_INPUTS[name] === 0;
       const field = this.module.fields.get(isOne ? name : `${name}[#]`);
       values.forEach((value, index) => this.c.laconic_web_set(pointer, field, isOne ? 0 : index + 1, value));
     }
   }
 
-  inputValues(/** @type {string} */ name, /** @type {any} */ given) {
-    const count = INPUTS[name];
-    if (count === 0) return [askFinite(name, given)];
-    return count === WHEELS
-      ? askNumbers(name, given, /** @type {number} */ (this.wheelCount), "one for each wheel")
-      : askNumbers(name, given, count, "along x and along y");
-  }
-
   /** Takes steps with the input held. */
   run(/** @type {number} */ steps) {
     const pointer = this.pointer;
-    if (!Number.isSafeInteger(steps) || steps < 0)
-      throw new Refused("steps", `${toldOf(steps)} is no whole number of steps; give 0 or more`, "not a whole number");
-    for (let left = steps; left > 0; left -= Math.min(left, 2 ** 30))
+    for (let left = askSteps(steps); left > 0; left -= Math.min(left, 2 ** 30))
       this.check(this.c.laconic_web_run(pointer, Math.min(left, 2 ** 30)));
-  }
-
-  get steps() {
-    return this.c.laconic_web_steps(this.pointer);
-  }
-
-  get time_s() {
-    return this.steps * /** @type {number} */ (this.step_s);
   }
 
   /** All outputs at this moment, by the names that docs/scenes.md explains. */
@@ -158,11 +113,5 @@ export class Robot {
     if (!Number.isInteger(wheel) || wheel < 0 || wheel >= count)
       throw new Refused("wheel", `${toldOf(wheel)} is no wheel of this robot; ${remedy}`, "no such wheel");
     return this.c.laconic_web_motor_gain(pointer, wheel);
-  }
-
-  /** Gives its memory back; a second time does nothing. */
-  free() {
-    if (this.#pointer) this.c.laconic_web_free(this.#pointer);
-    this.#pointer = 0;
   }
 }

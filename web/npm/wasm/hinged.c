@@ -17,14 +17,19 @@ static laconic_articulated_input commanded(const laconic_web_robot *robot) {
     return input;
 }
 
+static void copy_twist(laconic_real to[3], const laconic_real from[3]) {
+    for (int k = 0; k < 3; k++) to[k] = from[k];
+}
+
 /* Puts the vehicle at its start, where the inputs already act; returns a status. */
 WEB_EXPORT(laconic_web_place) int32_t laconic_web_place(laconic_web_robot *robot) {
     robot->hinged_start.x_m = robot->start.x_m;
     robot->hinged_start.y_m = robot->start.y_m;
     robot->hinged_start.heading_rad = robot->start.heading_rad;
-    robot->acting = commanded(robot);
+    const laconic_articulated_input input = commanded(robot);
+    copy_twist(robot->twist, input.twist);
     const laconic_status status = laconic_articulated_state_set(&robot->state, &robot->changed_m_per_s, &robot->model,
-                                                                &robot->hinged_start, &robot->acting, &robot->why);
+                                                                &robot->hinged_start, &input, &robot->why);
     return (int32_t)(status == LACONIC_OK ? status : laconic_web_refuse(robot));
 }
 
@@ -38,7 +43,7 @@ static laconic_status step(laconic_web_robot *robot, const laconic_articulated_i
     const laconic_status status =
         laconic_articulated_step(&robot->model, &robot->integrator, &robot->state, from, to, &robot->why);
     if (status != LACONIC_OK) return laconic_web_refuse(robot);
-    robot->acting = *to;
+    copy_twist(robot->twist, to->twist);
     robot->steps++;
     return status;
 }
@@ -51,11 +56,11 @@ WEB_EXPORT(laconic_web_run) int32_t laconic_web_run(laconic_web_robot *robot, ui
     laconic_status status = LACONIC_OK;
     robot->before = robot->state;
     robot->steps_before = robot->steps;
-    for (int k = 0; k < 3; k++) from.twist[k] = robot->acting.twist[k];
+    copy_twist(robot->twist_before, robot->twist);
+    copy_twist(from.twist, robot->twist);
     laconic_articulated_ramp(&from, &to, robot->integrator.step_s);
     for (uint32_t k = 0; k < steps && status == LACONIC_OK; k++)
         status = k == 0 ? step(robot, &from, &to) : step(robot, &held, &held);
-    if (status == LACONIC_OK && steps > 0) robot->acting = held;
     return (int32_t)status;
 }
 
@@ -63,6 +68,7 @@ WEB_EXPORT(laconic_web_run) int32_t laconic_web_run(laconic_web_robot *robot, ui
 WEB_EXPORT(laconic_web_back) void laconic_web_back(laconic_web_robot *robot) {
     robot->state = robot->before;
     robot->steps = robot->steps_before;
+    copy_twist(robot->twist, robot->twist_before);
 }
 
 WEB_EXPORT(laconic_web_clear_input) void laconic_web_clear_input(laconic_web_robot *robot) {
@@ -81,16 +87,11 @@ WEB_EXPORT(laconic_web_outputs) const laconic_web_hinged_outputs *laconic_web_ou
 /* Fills the reactions, under the inputs that are set and the twist that acts; returns a status. */
 WEB_EXPORT(laconic_web_reactions) int32_t laconic_web_reactions(laconic_web_robot *robot) {
     laconic_articulated_input input = commanded(robot);
-    for (int k = 0; k < 3; k++) input.twist[k] = robot->acting.twist[k];
+    copy_twist(input.twist, robot->twist);
     const laconic_status status = laconic_articulated_reactions_of(&robot->outputs.reactions, &robot->model,
                                                                    &robot->state, &input, NULL, &robot->why);
     return (int32_t)(status == LACONIC_OK ? status : laconic_web_refuse(robot));
 }
-
-typedef struct laconic_web_output {
-    const char *name;
-    uint32_t offset, count;
-} laconic_web_output;
 
 #define MOTION(name) \
     {#name, offsetof(laconic_web_hinged_outputs, motion.name), \

@@ -1,11 +1,6 @@
 /* The outputs by name: where JavaScript finds each in a laconic_outputs, and how many numbers it has. */
 #include "web.h"
 
-typedef struct laconic_web_output {
-    const char *name;
-    uint32_t offset, count;
-} laconic_web_output;
-
 #define OUTPUT(name, member) \
     {#name, offsetof(laconic_outputs, member), sizeof(((laconic_outputs *)NULL)->member) / sizeof(laconic_real)}
 #define POSE(name) OUTPUT(name, pose.name)

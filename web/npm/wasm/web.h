@@ -25,49 +25,46 @@ typedef struct laconic_web_hinged_outputs {
     laconic_articulated_motion motion;
     laconic_articulated_reactions reactions;
 } laconic_web_hinged_outputs;
+#else
+#define LACONIC_WEB_FIELD_COUNT LACONIC_FIELD_COUNT
+#endif
 
-/* A vehicle with hinges: what was given, and what moves. */
+/* A robot: what was given, and what moves. */
 typedef struct laconic_web_robot {
     laconic_vehicle vehicle; /* as given: without the rotors that laconic_motor_fit() adds */
     laconic_motor motor;     /* of no effect while its resistance is 0, as no motor has    */
     bool has_motor;
     uint32_t own_zero[LACONIC_MAX_WHEELS]; /* a bit for each own value that was given as 0: own_zeros.c */
-    laconic_start start;                   /* place and heading alone */
-    laconic_input input;                   /* of wheels and carriage  */
-    laconic_articulated_vehicle hinged;    /* bodies, and the bodies of wheels; its base is made of the vehicle */
+    laconic_start start;                   /* with hinges: place and heading alone */
+    laconic_input input;                   /* of wheels and carriage               */
+#ifdef LACONIC_WEB_HINGES
+    laconic_articulated_vehicle hinged; /* bodies, and the bodies of wheels; its base is made of the vehicle */
     laconic_articulated_start hinged_start;
-    laconic_articulated_input hinged_input; /* of hinges; its base is made of the input  */
-    laconic_articulated_input acting;       /* at the end of the last step               */
+    laconic_articulated_input hinged_input; /* of hinges; its base is made of the input */
+    laconic_real twist[3], twist_before[3]; /* at the end of the last step, and before the last run */
     laconic_articulated_model model;
     laconic_articulated_integrator integrator;
     laconic_articulated_state state, before; /* now, and before the last run */
     laconic_real changed_m_per_s;            /* by which the start was moved to a motion that is allowed */
     double steps, steps_before;
     laconic_web_hinged_outputs outputs;
-    laconic_refusal why;
-    char text[LACONIC_WEB_TEXT];
-} laconic_web_robot;
 #else
-#define LACONIC_WEB_FIELD_COUNT LACONIC_FIELD_COUNT
-
-/* A robot: what was given, and the plant made of it. */
-typedef struct laconic_web_robot {
-    laconic_vehicle vehicle; /* as given: without the rotors that laconic_motor_fit() adds */
-    laconic_motor motor;     /* of no effect while its resistance is 0, as no motor has    */
-    bool has_motor;
-    uint32_t own_zero[LACONIC_MAX_WHEELS]; /* a bit for each own value that was given as 0: own_zeros.c */
-    laconic_start start;
-    laconic_input input;
     laconic_plant plant;
     laconic_contact contact;
     laconic_model rolling; /* the robot on ideal ground, for wanted velocities */
     bool rolls;            /* false: fixed wheels keep it from yawing there     */
     laconic_outputs outputs;
     laconic_real wanted[LACONIC_MAX_WHEELS]; /* voltages or torques that wanted.c finds */
+#endif
     laconic_refusal why;
     char text[LACONIC_WEB_TEXT];
 } laconic_web_robot;
-#endif
+
+/* Where JavaScript finds an output, and how many numbers it has. */
+typedef struct laconic_web_output {
+    const char *name;
+    uint32_t offset, count;
+} laconic_web_output;
 
 /* Keeps the text of a refusal; returns its status. */
 laconic_status laconic_web_refuse(laconic_web_robot *robot);

@@ -21,7 +21,7 @@ export class Study {
   constructor(/** @type {any} */ laconic, /** @type {any} */ scene, /** @type {Record<string, number>} */ signals) {
     this.laconic = laconic;
     this.scene = scene;
-    this.input = inputOf(signals, scene.vehicle.wheel.length);
+    this.signals = signals;
     /** @type {Point[]} */
     this.points = [];
     this.work = this.go();
@@ -38,7 +38,7 @@ export class Study {
     const place = yield* this.referencePlace();
     if (!place) return;
     for (const step_s of STEPS_S)
-      for (const { name } of this.laconic.methods) {
+      for (const { name } of this.laconic.methodsOf(this.scene)) {
         const point = this.measure(name, step_s, place);
         if (point) this.points.push(point);
         yield;
@@ -53,6 +53,7 @@ export class Study {
   *referencePlace() {
     const probe = this.laconic.robot(plain(this.scene), { method: "auto", step_s: 0.001 });
     const fine = probe.hasFriction ? FINE_S.friction : FINE_S.ideal;
+    this.input = inputOf(this.signals, probe.wheelCount);
     probe.free();
     const found = referenceOf(this.laconic, this.scene, fine);
     if (!found) return undefined;

@@ -1,20 +1,23 @@
 // The lists and buttons of the page: what they offer, and what they call.
 import { ownScene, scenes } from "./facts.js";
+import { hasHinges } from "./hinged.js";
 import { byId, element, shown } from "./texts.js";
 
 const EVENTS = ["input", "change", "click", "dblclick", "keydown", "keyup", "pointerdown", "pointermove", "resize"];
 
-export function fillChoices(/** @type {any} */ laconic) {
+export function fillChoices() {
+  const isOfPaper = (/** @type {any} */ { id }) => id.startsWith("paper");
   const groups = [
-    ["Real robots and examples", (/** @type {string} */ id) => !id.startsWith("paper")],
-    ["From the paper", (/** @type {string} */ id) => id.startsWith("paper")],
+    ["Real robots and examples", (/** @type {any} */ scene) => !isOfPaper(scene) && !hasHinges(scene)],
+    ["Steered wheels, casters, trailers", hasHinges],
+    ["From the paper", isOfPaper],
   ];
   const options = groups.map(([label, takes]) =>
     element(
       "optgroup",
       { label },
       ...scenes
-        .filter(({ id }) => /** @type {any} */ (takes)(id))
+        .filter((scene) => /** @type {any} */ (takes)(scene))
         .map(({ id, name }) => element("option", { value: id }, name)),
     ),
   );
@@ -22,11 +25,14 @@ export function fillChoices(/** @type {any} */ laconic) {
     ...options,
     element("optgroup", { label: "Draw one" }, element("option", { value: "own" }, ownScene().name)),
   );
-  byId("method").append(
-    ...laconic.methods.map((/** @type {any} */ { name, order }) =>
-      element("option", { value: name }, `${name}, order ${order}`),
-    ),
+}
+
+/** The methods of the core that a robot has, one of them chosen. */
+export function showMethods(/** @type {any[]} */ methods, /** @type {string} */ chosen) {
+  byId("method").replaceChildren(
+    ...methods.map(({ name, order }) => element("option", { value: name }, `${name}, order ${order}`)),
   );
+  byId("method").value = chosen;
 }
 
 /** A step that the list lacks gets its line. */

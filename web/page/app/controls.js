@@ -1,11 +1,12 @@
 // How the robot is driven: sliders, keys and gamepad set a wanted velocity, or each wheel has a slider of its own.
-import { perWheel } from "./drive.js";
+import { mostVoltage, perWheel } from "./drive.js";
+import { hasHinges } from "./hinged.js";
+import { HingedWay } from "./hinged_way.js";
 import { byId, element, fixed, roundDown } from "./texts.js";
 
 export const DIRECTIONS = ["forward", "left", "turn"];
 const UNITS = { velocity: ["m/s", "m/s", "rad/s"], acceleration: ["m/s²", "m/s²", "rad/s²"] };
 const PUSH = [1, 1, 3]; // m/s² and rad/s² at the end of a slider, for robots without motors
-const USUAL_V = 12;
 const OF_KEYS = 0.7; // of a slider's end that a key gives
 const DEAD = 0.12; // of a gamepad's stick
 /** @type {Record<string, [number, number]>} */
@@ -30,6 +31,63 @@ function uses(/** @type {Element} */ focused, /** @type {string} */ key) {
   return focused.matches(FIELDS) || (key.startsWith("arrow") && !focused.matches(WITHOUT_ARROWS));
 }
 
+/** How one robot without hinges is driven: three directions, what each wheel takes, and the signals that follow. */
+class RigidWay {
+  constructor(/** @type {any} */ scene, /** @type {any} */ robot) {
+    const wheels = scene.vehicle.wheel;
+    this.robot = robot;
+    this.hasMotors = wheels.some((/** @type {any} */ _, /** @type {number} */ i) => robot.motorGain(i) !== 0);
+    this.able = [0, 1, 2].map((k) => robot.allowed(...unit(k))[k] > 0.2 && wheels.length > 0);
+    if (wheels.length && !this.hasMotors) this.most = PUSH;
+    else this.most = [0, 1, 2].map((k) => this.fastest(k, mostVoltage(scene)));
+    this.labels = ["Forward", "Left", "Turn"];
+    this.units = UNITS[this.hasMotors ? "velocity" : "acceleration"];
+    this.scales = [1, 1, 1];
+    this.words = this.hasMotors ? "Velocity" : "Acceleration";
+    this.knobs = this.knobsOf(scene);
+  }
+
+  fastest(/** @type {number} */ k, /** @type {number} */ voltage) {
+    const needed = Math.max(0, ...this.robot.voltagesFor(...unit(k)).map(Math.abs));
+    return needed > 1e-9 ? roundDown(voltage / needed) : 1;
+  }
+
+  knobsOf(/** @type {any} */ scene) {
+    const most = this.hasMotors ? mostVoltage(scene) : roundDown(1.0001 * mostTorque(scene, this.robot)),
+      name = this.hasMotors ? "voltage_V" : "axle_torque_Nm";
+    return scene.vehicle.wheel.map((/** @type {any} */ wheel, /** @type {number} */ i) => ({
+      id: `wheel-${i}`,
+      label: `Wheel ${i + 1}`,
+      unit: this.hasMotors ? "V" : "N·m",
+      most,
+      disabled: wheel.locked || (this.hasMotors && this.robot.motorGain(i) === 0),
+      of: (/** @type {number} */ level) => ({ [`${name}[${i + 1}]`]: level }),
+      from: (/** @type {Record<string, number>} */ signals) => signals[`${name}[${i + 1}]`] ?? 0,
+    }));
+  }
+
+  /** @returns {Record<string, number>} */
+  driven(/** @type {number[]} */ wanted) {
+    const find = this.hasMotors ? "voltagesFor" : "torquesFor";
+    if (wanted.every((value) => value === 0)) return {};
+    return perWheel(this.hasMotors ? "voltage_V" : "axle_torque_Nm", this.robot[find](...wanted));
+  }
+
+  /** A curve at half the speed; nothing without motors. @returns {Record<string, number> | undefined} */
+  usual() {
+    if (!this.hasMotors) return undefined;
+    return perWheel("voltage_V", this.robot.voltagesFor(...this.most.map((value) => value / 2)));
+  }
+
+  hint(/** @type {string} */ mode) {
+    if (mode === "scene") return "What the scene gives each wheel over time. Touch a slider or a key to take over.";
+    if (mode === "wheels") return this.hasMotors ? "The voltage of each motor." : "The torque on each axle.";
+    return this.hasMotors
+      ? "Velocity of the body’s origin. The core’s matrices give the least voltages that hold it without slip."
+      : "No motors here: the core’s matrices give the least torques on the axles that accelerate the body so.";
+  }
+}
+
 /** The drive panel for one robot. */
 export class Controls {
   /** @param {{touched: (mode: string) => void}} owner */
@@ -37,7 +95,8 @@ export class Controls {
     this.owner = owner;
     this.mode = "scene";
     this.wanted = [0, 0, 0];
-    this.most = [1, 1, 1];
+    /** @type {any} */
+    this.way = undefined;
     /** @type {number[]} */
     this.levels = [];
     this.held = new Set();
@@ -60,49 +119,46 @@ export class Controls {
 
   /** Fits sliders to a robot: which directions its wheels allow, and how fast. */
   fit(/** @type {any} */ robot, /** @type {any} */ scene, /** @type {boolean} */ isSame) {
-    this.robot = robot;
-    this.hasMotors = scene.vehicle.wheel.some(
-      (/** @type {any} */ _, /** @type {number} */ i) => robot.motorGain(i) !== 0,
-    );
-    this.able = [0, 1, 2].map((k) => robot.allowed(...unit(k))[k] > 0.2 && scene.vehicle.wheel.length > 0);
-    if (scene.vehicle.wheel.length && !this.hasMotors) this.most = PUSH;
-    else this.most = [0, 1, 2].map((k) => this.fastest(k, mostVoltage(scene)));
+    this.way = hasHinges(scene) ? new HingedWay(scene, robot) : new RigidWay(scene, robot);
     if (!isSame) {
       this.wanted = [0, 0, 0];
-      this.levels = scene.vehicle.wheel.map(() => 0);
+      this.levels = this.way.knobs.map((/** @type {any} */ { usual = 0 }) => usual);
     }
     this.fitVelocities();
-    this.fitWheels(scene);
+    this.fitKnobs();
     this.show();
   }
 
-  fastest(/** @type {number} */ k, /** @type {number} */ voltage) {
-    const needed = Math.max(0, ...this.robot.voltagesFor(...unit(k)).map(Math.abs));
-    return needed > 1e-9 ? roundDown(voltage / needed) : 1;
+  get most() {
+    return this.way.most;
+  }
+
+  get able() {
+    return this.way?.able;
   }
 
   fitVelocities() {
     for (const [k, name] of DIRECTIONS.entries()) {
       const slider = byId(name);
-      slider.disabled = !this.able?.[k];
+      slider.disabled = !this.able[k];
       slider.min = String(-this.most[k]);
       slider.max = String(this.most[k]);
       slider.step = String(this.most[k] / 100);
+      slider.parentElement.hidden = !this.way.labels[k];
+      slider.previousElementSibling.textContent = this.way.labels[k];
     }
-    byId("velocity-label").textContent = this.hasMotors ? "Velocity" : "Acceleration";
+    byId("velocity-label").textContent = this.way.words;
   }
 
-  fitWheels(/** @type {any} */ scene) {
-    const most = this.hasMotors ? mostVoltage(scene) : roundDown(1.0001 * mostTorque(scene, this.robot));
-    this.wheelUnit = this.hasMotors ? "V" : "N·m";
-    this.levels.length = scene.vehicle.wheel.length;
-    const rows = scene.vehicle.wheel.map((/** @type {any} */ wheel, /** @type {number} */ i) => {
+  fitKnobs() {
+    this.levels.length = this.way.knobs.length;
+    const rows = this.way.knobs.map((/** @type {any} */ { id, label, most, disabled }, /** @type {number} */ i) => {
       this.levels[i] = Math.max(-most, Math.min(most, this.levels[i] ?? 0));
-      const slider = element("input", { type: "range", id: `wheel-${i}`, min: -most, max: most, step: most / 100 });
-      slider.disabled = wheel.locked || (this.hasMotors && this.robot.motorGain(i) === 0);
-      slider.addEventListener("input", () => this.turnWheel(i, Number(slider.value)));
-      const label = element("label", { htmlFor: `wheel-${i}` }, `Wheel ${i + 1}`);
-      return element("div", { className: "slider" }, label, slider, element("output", { htmlFor: `wheel-${i}` }));
+      const slider = element("input", { type: "range", id, min: -most, max: most, step: most / 100 });
+      slider.disabled = Boolean(disabled);
+      slider.addEventListener("input", () => this.turnKnob(i, Number(slider.value)));
+      const output = element("output", { htmlFor: id });
+      return element("div", { className: "slider" }, element("label", { htmlFor: id }, label), slider, output);
     });
     byId("wheel-sliders").replaceChildren(...rows);
   }
@@ -122,7 +178,7 @@ export class Controls {
     this.owner.touched("velocity");
   }
 
-  turnWheel(/** @type {number} */ i, /** @type {number} */ value) {
+  turnKnob(/** @type {number} */ i, /** @type {number} */ value) {
     this.levels[i] = value;
     if (this.mode !== "wheels") this.choose("wheels");
     this.show();
@@ -131,7 +187,7 @@ export class Controls {
 
   stop() {
     this.wanted = [0, 0, 0];
-    this.levels = this.levels.map(() => 0);
+    this.levels = this.way.knobs.map((/** @type {any} */ { usual = 0 }) => usual);
     if (this.mode === "scene") this.choose("velocity");
     this.show();
     this.owner.touched(this.mode);
@@ -139,10 +195,9 @@ export class Controls {
 
   /** What acts on the robot now. @returns {Record<string, number>} */
   signals() {
-    const name = this.hasMotors ? "voltage_V" : "axle_torque_Nm";
-    if (this.mode === "wheels") return perWheel(name, this.levels);
-    const find = this.hasMotors ? "voltagesFor" : "torquesFor";
-    return this.wanted.every((value) => value === 0) ? {} : perWheel(name, this.robot[find](...this.wanted));
+    if (this.mode !== "wheels") return this.way.driven(this.wanted);
+    const levels = this.levels.map((level, i) => this.way.knobs[i].of(level));
+    return Object.assign({}, ...levels);
   }
 
   /** Keys drive while nothing that uses them itself has the focus. */
@@ -187,29 +242,21 @@ export class Controls {
     this.stick = isUsed;
   }
 
-  /** Shows what the scene does to each wheel. */
+  /** Shows what the scene does to each wheel and hinge. */
   follow(/** @type {Record<string, number>} */ signals) {
-    const name = this.hasMotors ? "voltage_V" : "axle_torque_Nm";
-    this.levels = this.levels.map((_, i) => signals[`${name}[${i + 1}]`] ?? 0);
+    this.levels = this.way.knobs.map((/** @type {any} */ knob) => knob.from(signals));
     this.show();
   }
 
   show() {
     byId("velocity-sliders").hidden = this.mode !== "velocity";
     byId("wheel-sliders").hidden = this.mode === "velocity";
-    byId("drive-hint").textContent = hint(this.mode, Boolean(this.hasMotors));
-    const units = UNITS[this.hasMotors ? "velocity" : "acceleration"];
-    for (const [k, name] of DIRECTIONS.entries()) setSlider(byId(name), this.wanted[k], units[k]);
-    this.levels.forEach((level, i) => setSlider(byId(`wheel-${i}`), level, this.wheelUnit ?? ""));
+    if (!this.way) return;
+    const { units, scales, knobs } = this.way;
+    byId("drive-hint").textContent = this.way.hint(this.mode);
+    for (const [k, name] of DIRECTIONS.entries()) setSlider(byId(name), this.wanted[k], units[k], scales[k]);
+    this.levels.forEach((level, i) => setSlider(byId(knobs[i].id), level, knobs[i].unit, knobs[i].scale));
   }
-}
-
-function hint(/** @type {string} */ mode, /** @type {boolean} */ hasMotors) {
-  if (mode === "scene") return "What the scene gives each wheel over time. Touch a slider or a key to take over.";
-  if (mode === "wheels") return hasMotors ? "The voltage of each motor." : "The torque on each axle.";
-  return hasMotors
-    ? "Velocity of the body’s origin. The core’s matrices give the least voltages that hold it without slip."
-    : "No motors here: the core’s matrices give the least torques on the axles that accelerate the body so.";
 }
 
 function isSideless(/** @type {boolean[] | undefined} */ able) {
@@ -220,19 +267,12 @@ function unit(/** @type {number} */ k) {
   return [0, 1, 2].map((each) => Number(each === k));
 }
 
-function setSlider(/** @type {any} */ slider, /** @type {number} */ value, /** @type {string} */ unitName) {
+function setSlider(/** @type {any} */ slider, /** @type {number} */ value, /** @type {string} */ unitName, scale = 1) {
   if (!slider) return;
   slider.value = String(value);
-  const text = slider.disabled ? "not with these wheels" : `${fixed(value)} ${unitName}`;
+  const text = slider.disabled ? "not with these wheels" : `${fixed(value * scale, scale === 1 ? 2 : 1)} ${unitName}`;
   slider.setAttribute("aria-valuetext", text);
   slider.nextElementSibling.textContent = slider.disabled ? "–" : text;
-}
-
-/** The largest voltage that the scene gives, its supply, or 12 V. */
-function mostVoltage(/** @type {any} */ scene) {
-  const given = (scene.input ?? []).filter((/** @type {any} */ each) => each.signal.startsWith("voltage_V"));
-  const values = given.flatMap((/** @type {any} */ each) => each.value ?? [each.amplitude]).map(Math.abs);
-  return scene.vehicle.drive?.supply_V ?? (Math.max(0, ...values) || USUAL_V);
 }
 
 function mostTorque(/** @type {any} */ scene, /** @type {any} */ robot) {

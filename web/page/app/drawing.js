@@ -32,7 +32,7 @@ export function surface(/** @type {HTMLCanvasElement} */ canvas) {
 }
 
 /** Points around the wheels, outermost alone, in order. */
-function hull(/** @type {number[][]} */ points) {
+export function hull(/** @type {number[][]} */ points) {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = (/** @type {number[][]} */ list) => {
     const kept = /** @type {number[][]} */ ([]);
@@ -69,7 +69,7 @@ function corners(/** @type {any} */ vehicle) {
   return hull(places.length < 3 ? [...around, ...ring(0, 0, reach(vehicle) * 0.8)] : around);
 }
 
-function ring(/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ r) {
+export function ring(/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ r) {
   return Array.from({ length: 12 }, (_, k) => [
     x + r * Math.cos((k * Math.PI) / 6),
     y + r * Math.sin((k * Math.PI) / 6),
@@ -98,7 +98,7 @@ export function drawBody(
   drawNose(pen, reach(vehicle), style);
 }
 
-function drawNose(/** @type {CanvasRenderingContext2D} */ pen, /** @type {number} */ size, /** @type {any} */ style) {
+export function drawNose(/** @type {CanvasRenderingContext2D} */ pen, /** @type {number} */ size, /** @type {any} */ style) {
   pen.beginPath();
   pen.moveTo(size * 0.22, size * 0.14);
   pen.lineTo(size * 0.38, 0);

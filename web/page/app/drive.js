@@ -2,6 +2,7 @@
 
 /** @typedef {{t_s: number, signals: Record<string, number>}} Change */
 
+const USUAL_V = 12;
 const HELD_S = 0.01; // tables and sines are held over this time
 
 /** The inputs of a scene as changes. @param {any[]} inputs @param {number} duration_s @returns {Change[]} */
@@ -31,21 +32,30 @@ function valueAt(/** @type {any} */ input, /** @type {number} */ t_s) {
   return input.value[last] + part * (input.value[next] - input.value[last]);
 }
 
-const PLANAR = ["body_force_N", "world_force_N", "world_force_point_m"]; // along x and along y
+/** Lists of inputs that have no item for each wheel: how long they are. @type {Record<string, number>} */
+const LENGTHS = { body_force_N: 2, world_force_N: 2, world_force_point_m: 2, steering_twist: 3 };
 
-/** Signals as setInput() of a robot with so many wheels takes them. */
+/** Signals as setInput() of a robot with so many wheels takes them; those of hinges are by their names. */
 export function inputOf(/** @type {Record<string, number>} */ signals, /** @type {number} */ wheels) {
   /** @type {Record<string, any>} */
   const input = {};
   for (const [signal, value] of Object.entries(signals)) {
     const [name, item] = signal.split(/[[\]]/);
     if (item === undefined) input[name] = value;
+    else if (Number.isNaN(Number(item))) (input[name] ??= {})[item] = value;
     else (input[name] ??= [])[Number(item) - 1] = value;
   }
   for (const [name, values] of Object.entries(input))
     if (Array.isArray(values))
-      input[name] = Array.from({ length: PLANAR.includes(name) ? 2 : wheels }, (_, i) => values[i] ?? 0);
+      input[name] = Array.from({ length: LENGTHS[name] ?? wheels }, (_, i) => values[i] ?? 0);
   return input;
+}
+
+/** The largest voltage that the scene gives by such signals, its supply, or 12 V. */
+export function mostVoltage(/** @type {any} */ scene, signals = "voltage_V") {
+  const given = (scene.input ?? []).filter((/** @type {any} */ each) => each.signal.startsWith(signals));
+  const values = given.flatMap((/** @type {any} */ each) => each.value ?? [each.amplitude]).map(Math.abs);
+  return scene.vehicle.drive?.supply_V ?? (Math.max(0, ...values) || USUAL_V);
 }
 
 /** One signal of each wheel. */

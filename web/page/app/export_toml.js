@@ -2,13 +2,14 @@
 import { inputsOf } from "./drive.js";
 
 const SUBTABLES = ["motor", "drive", "payload"];
+const LISTS = ["wheel", "support", "body", "caster", "trailer"];
 
 /**
  * @param {any} scene @param {{method: string, step_s: number}} how
  * @param {{changes: any[], time_s: number} | undefined} drive
  */
 export function sceneToml(scene, how, drive) {
-  const { wheel, support = [], ...vehicle } = scene.vehicle;
+  const vehicle = Object.fromEntries(Object.entries(scene.vehicle).filter(([key]) => !LISTS.includes(key)));
   const inputs = drive ? inputsOf(drive.changes) : (scene.input ?? []);
   const duration_s = drive ? drive.time_s : scene.run.duration_s;
   return [
@@ -16,8 +17,9 @@ export function sceneToml(scene, how, drive) {
     pairs({ name: scene.name, source: scene.source }),
     table("vehicle", without(vehicle, SUBTABLES)),
     ...SUBTABLES.filter((name) => vehicle[name]).map((name) => table(`vehicle.${name}`, vehicle[name])),
-    ...wheel.map((/** @type {any} */ each) => table("[vehicle.wheel]", each)),
-    ...support.map((/** @type {any} */ each) => table("[vehicle.support]", each)),
+    ...LISTS.flatMap((name) =>
+      (scene.vehicle[name] ?? []).map((/** @type {any} */ each) => table(`[vehicle.${name}]`, each)),
+    ),
     ...["ground", "initial"].filter((name) => scene[name]).map((name) => table(name, scene[name])),
     ...inputs.map((/** @type {any} */ each) => table("[input]", each)),
     table("run", { duration_s, step_s: how.step_s, method: how.method }),
@@ -41,6 +43,10 @@ function pairs(/** @type {any} */ given) {
 /** @param {any} value @returns {string} */
 function valueText(value) {
   if (Array.isArray(value)) return `[${value.map(valueText).join(", ")}]`;
+  if (typeof value === "object")
+    return `{ ${Object.entries(value)
+      .map(([key, each]) => `${key} = ${valueText(each)}`)
+      .join(", ")} }`;
   if (typeof value === "string") return JSON.stringify(value).replace(/\u007f/g, "\\u007f");
   if (typeof value === "number" && Number.isInteger(value) && Math.abs(value) < 1e15) return value.toFixed(1);
   return String(value);

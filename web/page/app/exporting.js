@@ -22,10 +22,13 @@ export function setUpExport(current) {
 }
 
 /** A robot that the core refuses is none to take away; the banner tells what to mend. */
-export function allowExport(/** @type {boolean} */ isWhole) {
-  for (const id of ["export-toml", "export-c"]) {
-    byId(id).disabled = !isWhole;
-    byId(id).title = isWhole ? "" : "Not while the robot is refused";
+export function allowExport(/** @type {boolean} */ isWhole, /** @type {boolean} */ hasC) {
+  for (const [id, isAllowed] of /** @type {[string, boolean][]} */ ([
+    ["export-toml", isWhole],
+    ["export-c", isWhole && hasC],
+  ])) {
+    byId(id).disabled = !isAllowed;
+    byId(id).title = isAllowed ? "" : isWhole ? "Not for robots with hinges yet" : "Not while the robot is refused";
   }
 }
 

@@ -1,6 +1,8 @@
 // What the build put into the page: the scenes, and the hash of the native core.
+import { bytesOf, unpacked } from "laconic/module";
 
-const facts = JSON.parse(document.getElementById("facts")?.textContent ?? "{}");
+const given = await unpacked(bytesOf(document.getElementById("facts")?.textContent ?? ""));
+const facts = JSON.parse(new TextDecoder().decode(given));
 
 /** @type {string} */
 export const nativeHash = facts.nativeHash;

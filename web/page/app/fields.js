@@ -1,4 +1,5 @@
 // The vehicle's numbers as a form. A refusal of the core stands under the field that it names.
+import { hasHinges } from "./hinged.js";
 import { byId, element, entry, inDegrees, inRadians, say } from "./texts.js";
 import { numberTyped } from "./typed.js";
 
@@ -111,7 +112,8 @@ export class Fields {
     const hasRollers = scene.vehicle.wheel.some((/** @type {any} */ wheel) => wheel.kind !== "fixed");
     const ofFriction = FRICTION.filter(([path]) => hasRollers || path !== "ground.roller_drag");
     const isSlippery = scene.ground?.friction_coefficient !== undefined;
-    this.fill("fields-ground", [...(isSlippery ? ofFriction : MARGIN), ...SLOPE]);
+    const ofGround = isSlippery ? ofFriction : hasHinges(scene) ? [] : MARGIN; // no margin is computed with hinges
+    this.fill("fields-ground", [...ofGround, ...SLOPE]);
     byId("friction").checked = isSlippery;
     if (focused) byId(focused)?.focus();
   }

@@ -1,14 +1,15 @@
 // The page: one robot, its drive, and what the panels show of it.
 import { load } from "laconic";
+import { load as loadHinges } from "laconic/hinges";
 import { Study } from "./accuracy.js";
-import { fillChoices, listenFor, showStep } from "./choices.js";
+import { fillChoices, listenFor, showMethods, showStep } from "./choices.js";
 import { Controls } from "./controls.js";
-import { perWheel } from "./drive.js";
 import { Editor } from "./editor.js";
 import { allowExport, setUpExport } from "./exporting.js";
 import { ownScene, scenes, slips } from "./facts.js";
 import { Fields, setFriction } from "./fields.js";
 import { showHash } from "./hash_check.js";
+import { Cores, hasHinges } from "./hinged.js";
 import { showPanels } from "./panels.js";
 import { Run, SceneDrive } from "./run.js";
 import { Stage } from "./stage.js";
@@ -41,7 +42,7 @@ class Page {
     this.fields = new Fields(() => this.rebuild());
     this.editor = new Editor(() => this.drawn(), laconic.maxWheels);
     this.controls = new Controls({ touched: (mode) => this.touched(mode) });
-    fillChoices(laconic);
+    fillChoices();
     listenFor(this);
     this.choose(FIRST);
     setUpExport(() => ({ scene: this.scene, how: this.how, run: this.run, led: this.led() }));
@@ -55,7 +56,7 @@ class Page {
     this.scene.input ??= [];
     const { method, step_s } = this.scene.run;
     this.how = { ...this.how, method, step_s };
-    byId("method").value = method;
+    showMethods(this.laconic.methodsOf(this.scene), method);
     showStep(step_s);
     this.run?.free();
     this.run = undefined;
@@ -65,13 +66,19 @@ class Page {
     this.controls.choose(this.sceneDrive.isEmpty && !this.scene.initial ? "velocity" : "scene", false);
     byId("source").textContent = byId("source").title = this.scene.source;
     if (id === "own") this.view("draw");
+    else if (this.isDrawing && hasHinges(this.scene)) this.view("drive");
   }
 
   fit() {
+    const hinged = hasHinges(this.scene);
     this.fields.changedPath = undefined;
     this.fields.fit(this.scene);
-    this.editor.fit(this.scene);
+    if (!hinged) this.editor.fit(this.scene);
     byId("ideal-row").hidden = !slips(this.scene);
+    for (const id of ["grip-panel", "friction-row", "error-line"]) byId(id).hidden = hinged;
+    byId("hinges-panel").hidden = !hinged;
+    byId("draw-view").disabled = hinged;
+    byId("draw-view").parentElement.title = hinged ? "Not for robots with hinges: edit the exported scene" : "";
   }
 
   change(/** @type {any} */ part) {
@@ -106,12 +113,13 @@ class Page {
       this.controls.fit(run.main.robot, run.scene, isSame);
       if (!isSame) this.stage.reset();
       this.refuse(undefined);
-      allowExport(true);
+      this.stopped = false;
+      allowExport(true, !run.layout);
       this.startStudy();
       showPanels(this);
     } catch (refused) {
       this.refuse(refused);
-      allowExport(false);
+      allowExport(false, false);
     }
   }
 
@@ -131,8 +139,16 @@ class Page {
     this.wake();
     if (mode === "scene") return this.run && this.restart();
     this.ended = false;
+    if (this.stopped) this.goOn();
     if (!this.isPlaying && this.run && this.run.steps === 0) this.play(true);
     return undefined;
+  }
+
+  /** After a refusal in motion, which left the robot as it was, another command may be taken. */
+  goOn() {
+    this.stopped = false;
+    this.left_s = 0;
+    this.refuse(undefined);
   }
 
   play(/** @type {boolean} */ isPlaying) {
@@ -176,6 +192,7 @@ class Page {
       }
     } catch (refused) {
       this.refuse(refused);
+      this.stopped = true;
     }
   }
 
@@ -221,16 +238,16 @@ class Page {
   /** Measures error and cost: with a turn that every method finds hard, or with what acts now. */
   startStudy(isOfNow = false) {
     const run = /** @type {Run} */ (this.run);
-    const signals = isOfNow && Object.keys(run.signals).length ? run.signals : this.usualSignals(run);
+    const signals = isOfNow && Object.keys(run.signals).length ? run.signals : this.usualSignals();
     this.study = new Study(this.laconic, run.scene, signals);
     this.studyWait = STUDY_WAIT;
     this.tabled = false;
   }
 
   /** A curve at half the speed; without motors the first inputs of the scene. */
-  usualSignals(/** @type {Run} */ run) {
-    if (this.controls.hasMotors)
-      return perWheel("voltage_V", run.main.robot.voltagesFor(...this.controls.most.map((value) => value / 2)));
+  usualSignals() {
+    const usual = this.controls.way.usual();
+    if (usual) return usual;
     const acts = (/** @type {any} */ signals) => Object.values(signals).some((value) => value !== 0);
     return this.sceneDrive?.changes.find(({ signals }) => acts(signals))?.signals ?? {};
   }
@@ -249,10 +266,10 @@ class Page {
   }
 }
 
-const laconic = await load();
+const [laconic, hinges] = await Promise.all([load(), loadHinges()]);
 if (window.matchMedia("(max-width: 1099px)").matches)
   for (const part of document.querySelectorAll("aside details")) part.removeAttribute("open");
-const page = new Page(laconic);
+const page = new Page(new Cores(laconic, hinges));
 page.play(page.isPlaying);
 page.view("drive");
 await showHash(laconic);

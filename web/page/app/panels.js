@@ -1,6 +1,7 @@
 // The panels beside the view: numbers, grip, error and cost, legend.
 import { drawStudy, tableOf } from "./accuracy.js";
 import { drawVelocities, showGrip, showNumbers } from "./charts.js";
+import { showHinges } from "./hinged_view.js";
 import { byId, fixed, length, shown } from "./texts.js";
 
 /** Everything that tells what the robot does now. */
@@ -10,7 +11,8 @@ export function showPanels(/** @type {any} */ page) {
   byId("time").textContent = `${fixed(page.run.time_s)} s`;
   if (page.controls.mode === "scene") page.controls.follow(page.run.signals);
   showNumbers(out);
-  showGrip(page.run.scene, out);
+  if (page.run.layout) showHinges(page.run, out);
+  else showGrip(page.run.scene, out);
   drawVelocities(page.run.history);
   byId("error-now").textContent = length(page.run.error_m());
   byId("error-of").textContent = page.run.reference
@@ -26,6 +28,9 @@ export function showPanels(/** @type {any} */ page) {
 function showLegend(/** @type {any} */ page) {
   const { run } = page;
   byId("legend-ideal").hidden = !run.ideal;
+  const behind = (run.trails?.all ?? []).map((/** @type {any} */ { name }) => name);
+  byId("legend-trails").hidden = behind.length === 0;
+  byId("legend-trails").lastChild.textContent = behind.join(", ");
   byId("legend-fleet").hidden = run.fleet.length === 0;
   byId("ideal-note").textContent = page.how.ideal && run.idealRefused ? run.idealRefused : "";
   const cost = median(page.costs); // as other work on the machine only adds to it

@@ -1,6 +1,7 @@
 // A drive: the robot, beside it the ideal one, a reference in fine steps and a fleet, all with the same inputs.
 import { changesOf, inputOf, sameSignals } from "./drive.js";
 import { ofOtherMass, onIdealGround, plain, slips } from "./facts.js";
+import { Trails, byCurvature, hasHinges, layoutOf } from "./hinged.js";
 
 export const FLEET = 20;
 const LIGHTEST = 0.7;
@@ -11,18 +12,19 @@ const FLEET_POINTS = 400;
 const REFERENCE_STEP_S = 1e-4;
 const HISTORY_S = 10;
 const REPLAY_STEPS = 2e6; // more are not computed anew when a number changes
+const HINGED_REPLAY_STEPS = 1e5; // the same with hinges, whose steps take longer
 
 /** @typedef {{robot: any, path: number[], scene: any}} Actor */
 
 /** The core's methods from the highest order to the lowest; auto, which takes every robot, is the last. */
-function mostAccurateFirst(/** @type {any} */ laconic) {
-  const names = [...laconic.methods].sort((a, b) => b.order - a.order).map(({ name }) => name);
+function mostAccurateFirst(/** @type {any} */ laconic, /** @type {any} */ scene) {
+  const names = [...laconic.methodsOf(scene)].sort((a, b) => b.order - a.order).map(({ name }) => name);
   return [...names.filter((name) => name !== "auto"), "auto"];
 }
 
 /** The core's most accurate method that takes this robot, in fine steps. */
 export function referenceOf(/** @type {any} */ laconic, /** @type {any} */ scene, /** @type {number} */ step_s) {
-  for (const method of mostAccurateFirst(laconic))
+  for (const method of mostAccurateFirst(laconic, scene))
     try {
       return { robot: laconic.robot(plain(scene), { method, step_s }), method };
     } catch {
@@ -49,7 +51,10 @@ export class Run {
     this.fleet = [];
     if (how.fleet) this.addFleet();
     this.parts = Math.max(1, Math.ceil(how.step_s / REFERENCE_STEP_S - 1e-9));
-    this.reference = referenceOf(laconic, scene, how.step_s / this.parts);
+    this.layout = hasHinges(scene) ? layoutOf(scene.vehicle) : undefined;
+    this.trails = this.layout && new Trails(this.layout);
+    // Commands of hinges end with a step, so finer steps would have others.
+    this.reference = this.layout ? undefined : referenceOf(laconic, scene, how.step_s / this.parts);
     this.steps = 0;
     /** @type {import("./drive.js").Change[]} */
     this.changes = [];
@@ -92,16 +97,16 @@ export class Run {
     return this.steps * this.step_s;
   }
 
-  /** What acts from now on, also recorded. */
+  /** What acts from now on, recorded unless it is refused. */
   set(/** @type {Record<string, number>} */ signals) {
     if (sameSignals(signals, this.signals)) return;
+    const input = inputOf(signals, this.main.robot.wheelCount);
+    for (const { robot } of this.actors) robot.setInput(input);
+    this.reference?.robot.setInput(input);
     this.signals = { ...signals };
     const last = this.changes.at(-1);
     if (last && last.t_s === this.time_s) last.signals = this.signals;
     else this.changes.push({ t_s: this.time_s, signals: this.signals });
-    const input = inputOf(this.signals, this.scene.vehicle.wheel.length);
-    for (const { robot } of this.actors) robot.setInput(input);
-    this.reference?.robot.setInput(input);
   }
 
   /** Takes steps and notes path and velocities; throws what the core refuses. */
@@ -115,10 +120,18 @@ export class Run {
     }
   }
 
+  /** All take as many steps as the robot does: a refusal may end them early. */
   take(/** @type {number} */ steps) {
-    for (const { robot } of this.actors) robot.run(steps);
-    this.reference?.robot.run(steps * this.parts);
-    this.steps += steps;
+    const [{ robot }, ...others] = this.actors,
+      begin = robot.steps;
+    try {
+      robot.run(steps);
+    } finally {
+      const taken = robot.steps - begin;
+      this.steps += taken;
+      for (const other of others) other.robot.run(taken);
+      this.reference?.robot.run(taken * this.parts);
+    }
   }
 
   note() {
@@ -128,6 +141,7 @@ export class Run {
       const most = 2 * (this.fleet.includes(actor) ? FLEET_POINTS : MOST_POINTS);
       if (actor.path.length > most) actor.path.splice(0, most / 4);
       if (actor === this.main) this.history.push({ t_s: this.time_s, out });
+      if (actor === this.main) this.trails?.take(out, this.time_s);
     }
     while (this.history.length > 1 && this.history[0].t_s < this.time_s - HISTORY_S) this.history.shift();
   }
@@ -155,7 +169,8 @@ export class Run {
     const run = new Run(laconic, scene, how);
     const sameWheels = scene.vehicle.wheel.length === before.scene.vehicle.wheel.length;
     try {
-      if (sameWheels && before.time_s / how.step_s < REPLAY_STEPS) run.follow(before.changes, before.time_s);
+      const most = run.layout ? HINGED_REPLAY_STEPS : REPLAY_STEPS;
+      if (sameWheels && before.time_s / how.step_s < most) run.follow(before.changes, before.time_s);
       return run;
     } catch (refused) {
       run.free();
@@ -179,7 +194,7 @@ export class Run {
 /** The inputs that come with a scene, at an instant. */
 export class SceneDrive {
   constructor(/** @type {any} */ scene) {
-    this.changes = changesOf(scene.input ?? [], scene.run.duration_s);
+    this.changes = byCurvature(scene, changesOf(scene.input ?? [], scene.run.duration_s));
     this.duration_s = scene.run.duration_s;
     this.isEmpty = !this.changes.some(({ signals }) => Object.values(signals).some((value) => value !== 0));
   }

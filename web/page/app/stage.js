@@ -1,5 +1,6 @@
 // The world from above: paths, robots, grid. World x points up and y to the left, as a robot at its start sees them.
 import { colours, drawBody, drawWheel, reach, surface } from "./drawing.js";
+import { drawCarriage, drawHung } from "./hinged_view.js";
 import { fixed } from "./texts.js";
 
 const EASE = 0.12; // of the way that the view goes in a frame
@@ -23,7 +24,7 @@ export class Stage {
     const { pen, width, height } = surface(this.canvas);
     const out = run.main.robot.outputs(),
       colour = colours();
-    const scale = (this.zoom * Math.min(width, height)) / (11 * reach(run.scene.vehicle));
+    const scale = (this.zoom * Math.min(width, height)) / (run.layout ? 8 * run.layout.size : 11 * reach(run.scene.vehicle));
     this.moveTo([out.origin_x_m, out.origin_y_m]);
     drawGrid(pen, width, height, scale, this.centre ?? [0, 0], colour);
     pen.save();
@@ -52,10 +53,19 @@ export class Stage {
     const px = 1 / scale;
     for (const actor of run.fleet) drawPath(pen, actor.path, colour.line, px, []);
     for (const actor of run.fleet)
-      placed(pen, actor.robot.outputs(), () => drawBody(pen, actor.scene.vehicle, { stroke: colour.soft, width: px }));
+      placed(pen, actor.robot.outputs(), () => {
+        const style = { stroke: colour.soft, width: px };
+        if (run.layout) drawCarriage(pen, run.layout, style);
+        else drawBody(pen, actor.scene.vehicle, style);
+      });
+    for (const { path } of run.trails?.all ?? []) drawPath(pen, path, colour.soft, 1.5 * px, []);
     if (run.ideal) this.drawIdeal(pen, run.ideal, px, colour);
     drawPath(pen, run.main.path, colour.accent, 2 * px, []);
-    placed(pen, out, () => this.drawMain(pen, run.scene.vehicle, out, px, colour));
+    if (run.layout) drawHung(pen, run.layout, out, px, colour);
+    placed(pen, out, () => {
+      if (run.layout) drawVelocity(pen, out, run.layout.size, px, colour);
+      else this.drawMain(pen, run.scene.vehicle, out, px, colour);
+    });
   }
 
   drawIdeal(/** @type {any} */ pen, /** @type {any} */ ideal, /** @type {number} */ px, /** @type {any} */ colour) {

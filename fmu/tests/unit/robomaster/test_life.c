@@ -16,7 +16,7 @@ static void its_clocks_need_event_mode(void) {
 static void it_is_for_co_simulation_alone(void) {
     const int before = short_memory_blocks;
     TEST_ASSERT_NULL(fmi3InstantiateModelExchange("a", fmu_token_3, NULL, false, true, NULL, log_3));
-    ASSERT_LOGGED("this FMU offers no Model Exchange");
+    ASSERT_LOGGED("this FMU offers no Model Exchange; use Co-Simulation");
     TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
 }
 

@@ -15,10 +15,13 @@ from canopen.profiles.p402 import BaseNode402
 from canopen_bus import played_on_canopen
 
 from laconic import build_scene
+from laconic.can.play.options import PlayOptions
+from laconic.can.play.places import place_of
 from laconic.can.play.settings import drive_settings
 from laconic.can.play.vehicle import played as without_motors
 from laconic.cli.main import run
 from laconic.errors import BadInput
+from laconic.pictures.views.recorded import Recorded
 from laconic.scene import read_scene
 from laconic.scene.scene_tables import scene_tables
 from play_support import played
@@ -155,6 +158,13 @@ def test_what_cannot_be_played_is_refused_in_one_line(arguments: list[str], mess
     assert run(["play", *arguments, "--listen", "0", "--duration", "1"]) == 2
     told = capsys.readouterr().err
     assert message in told and told.count("\n") == 1
+
+
+@pytest.mark.parametrize("option", ["bag", "foxglove", "rerun"])
+def test_recordings_of_hinges_are_refused_before_a_bus_is_opened(option: str) -> None:
+    options = PlayOptions(listen=0, drives="canopen", recorded=Recorded(**{option: Path("out.mcap")}))
+    with pytest.raises(BadInput, match=f"--{option} does not take vehicles with hinges yet"):
+        place_of(read_scene("tricycle_agv"), options)
 
 
 def test_a_node_process_plays_a_vehicle_with_hinges(capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,6 +14,7 @@ from laconic.scene import read_scene, rigid_scene_names
 
 VARIANTS = {"fmi2": (2, False), "fmi3": (3, False), "fmi3-scalar": (3, True)}
 STEPS, EVERY = 10_000, 100
+QUICK = {"s1", "skid_steer", "kuka_youbot", "paper_caster", "robotino_grey", "canopen_agv"}
 
 
 def signal_name(name: str, values: list[float], index: int) -> str:
@@ -49,7 +50,8 @@ def random_inputs(count: int, wheels: int) -> list[dict[str, list[float]]]:
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
-@pytest.mark.parametrize("scene_name", rigid_scene_names())
+@pytest.mark.parametrize("scene_name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.nightly)
+                                        for name in rigid_scene_names()])
 def test_ten_thousand_steps_give_the_same_bits_as_the_core(scene_name: str, variant: str, tmp_path: Path) -> None:
     version, scalar = VARIANTS[variant]
     scene = read_scene(scene_name).with_run(real="double")

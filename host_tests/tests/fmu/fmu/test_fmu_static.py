@@ -121,7 +121,8 @@ def test_two_source_fmus_in_one_static_program_give_each_its_own_results(tmp_pat
 @pytest.mark.parametrize("name", ["Laconic_fmi3", "LaconicEstimate_fmi2", "LaconicEstimate_fmi3",
                                   "LaconicController_fmi2", "LaconicController_fmi3", "LaconicDerivatives_fmi3",
                                   "LaconicNode_fmi3", "LaconicCanBus_fmi3", "LaconicCanController_fmi3",
-                                  "LaconicArticulated_fmi2", "LaconicArticulated_fmi3"])
+                                  "LaconicArticulated_fmi2", "LaconicArticulated_fmi3", "LaconicSlipping_fmi2",
+                                  "LaconicSlipping_fmi3"])
 def test_every_name_of_a_source_fmu_has_the_prefix_of_its_variant(name: str, tmp_path: Path) -> None:
     identifier, _, version = name.partition("_")
     names = global_names(compiled(sources_of(built(f"fmu/{name}.fmu"), tmp_path), "-Wall", "-Werror"))
@@ -129,7 +130,8 @@ def test_every_name_of_a_source_fmu_has_the_prefix_of_its_variant(name: str, tmp
     assert [each for each in sorted(names) if not ours.match(each)] == []
 
 
-@pytest.mark.parametrize("variant", ["Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated"])
+@pytest.mark.parametrize("variant", ["Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated",
+                                     "LaconicSlipping"])
 @pytest.mark.parametrize("version", [2, 3])
 def test_each_variant_has_a_model_identifier_of_its_own(variant: str, version: int) -> None:
     with Importer(built(f"fmu/{variant}_fmi{version}.fmu")) as importer:

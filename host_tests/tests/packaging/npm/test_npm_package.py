@@ -37,6 +37,31 @@ def node(script: str, folder: Path) -> str:
     return done.stdout
 
 
+def typechecked(text: str, folder: Path) -> str:
+    """What the compiler of TypeScript says of a module that uses the package."""
+    unpack(folder / "node_modules/laconic-robots")
+    (folder / "package.json").write_text('{"type": "module"}', encoding="utf-8")
+    (folder / "user.ts").write_text(text, encoding="utf-8")
+    done = subprocess.run(["tsc", "--noEmit", "--strict", "--target", "es2022", "--module", "node16",
+                           "--moduleResolution", "node16", "--lib", "es2022,dom", "user.ts"],
+                          cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr
+
+
+def check_names(types: str, classes: dict[str, tuple[str, ...]], methods: tuple[str, ...]) -> None:
+    """The members of each class are in its modules; a method's name is one of the core's."""
+    text = (FOLDER / "src" / types).read_text(encoding="utf-8")
+    for name, files in classes.items():
+        code = "".join((FOLDER / "src" / file).read_text(encoding="utf-8") for file in files)
+        body = re.search(rf"export class {name}[^{{]*\{{(.*?)^\}}", text, re.DOTALL | re.MULTILINE)
+        assert body is not None
+        for member in re.findall(r"^  (?:readonly )?(\w+)(?:\(|:)", body[1], re.MULTILINE):
+            assert re.search(rf"\bthis\.{member} =|\b(?:get )?{member}\(", code), member
+    offered = re.search(r"export type MethodName =\s*(.*?);", text, re.DOTALL)
+    assert offered is not None
+    assert tuple(re.findall(r'"([^"]+)"', offered[1])) == methods
+
+
 def unpack(target: Path) -> None:
     with tarfile.open(ARCHIVE) as tar:
         for member in tar.getmembers():
@@ -80,14 +105,8 @@ robot.run("200");
 @needs_node
 @pytest.mark.skipif(shutil.which("tsc") is None, reason="needs tsc (Debian: node-typescript)")
 def test_its_types_take_the_readmes_example_and_refuse_what_is_wrong(tmp_path):
-    unpack(tmp_path / "node_modules/laconic-robots")
-    (tmp_path / "package.json").write_text('{"type": "module"}', encoding="utf-8")
     example = re.findall(r"```js\n(.*?)```", SAMPLE.read_text(encoding="utf-8"), re.DOTALL)[0]
-    (tmp_path / "user.ts").write_text(example + WRONG, encoding="utf-8")
-    done = subprocess.run(["tsc", "--noEmit", "--strict", "--target", "es2022", "--module", "node16",
-                           "--moduleResolution", "node16", "--lib", "es2022,dom", "user.ts"],
-                          cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (0, "")
+    assert typechecked(example + WRONG, tmp_path) == ""
 
 
 RUN = """
@@ -205,17 +224,9 @@ def test_memory_of_freed_robots_is_used_again(tmp_path):
 @needs_npm_package
 @needs_node
 def test_its_types_and_its_modules_have_the_same_names():
-    types = (FOLDER / "src/index.d.ts").read_text(encoding="utf-8")
-    code = {path.name: path.read_text(encoding="utf-8") for path in (FOLDER / "src").glob("*.js")}
-    for name, file in (("Robot", "robot.js"), ("Laconic", "index.js"), ("Refused", "refused.js")):
-        body = re.search(rf"export class {name}[^{{]*\{{(.*?)^\}}", types, re.DOTALL | re.MULTILINE)
-        assert body is not None
-        for member in re.findall(r"^  (?:readonly )?(\w+)(?:\(|:)", body[1], re.MULTILINE):
-            assert re.search(rf"\bthis\.{member} =|\b(?:get )?{member}\(", code[file]) or member == "message", member
-    offered = re.search(r'export type MethodName =\s*(.*?);', types, re.DOTALL)
-    assert offered is not None
     from laconic.scene.methods import METHODS
-    assert tuple(re.findall(r'"([^"]+)"', offered[1])) == METHODS
+    classes = {"Robot": ("robot.js", "handle.js"), "Laconic": ("index.js",), "Refused": ("refused.js",)}
+    check_names("index.d.ts", classes, METHODS)
 
 
 @needs_npm_package

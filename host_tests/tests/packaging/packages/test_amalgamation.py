@@ -61,6 +61,15 @@ def test_it_compiles_without_a_warning_if_a_part_is_left_out(compiler, part, pai
         folder=pair / "laconic")
 
 
+@pytest.mark.parametrize("bodies", [1, *(pytest.param(each, marks=pytest.mark.nightly) for each in (0, 2))])
+def test_an_optimised_build_with_few_bodies_has_no_warning(bodies, pair):
+    """Warnings of values that may not be set need the optimiser, and come where loops over bodies are unrolled."""
+    if shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    run("gcc", "-std=c99", "-O2", *STRICT, f"-DLACONIC_MAX_BODIES={bodies}", "-c", "laconic.c", "-o", "few.o",
+        folder=pair / "laconic")
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize(("compiler", "standard"), [case for case in CASES if case[1][-2:] in ("99", "11", "20")])
 def test_every_public_header_stands_alone_in_every_language_that_it_promises(compiler, standard, tmp_path):

@@ -200,6 +200,33 @@ def test_its_program_in_cpp_prints_what_the_readme_states(tmp_path):
     assert printed == re.findall(r"```text\n(.*?)```", README, re.DOTALL)[0]
 
 
+LOOP = """#include <laconic/laconic.h>
+extern float battery_V, duty_left, duty_right;
+void stop(void);
+int start(const laconic_vehicle *robot);
+void every_millisecond(void);
+"""
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+def test_its_firmware_loop_compiles_and_a_plant_has_the_bytes_that_it_states(tmp_path):
+    def compiled(name: str, text: str, *options: str) -> None:
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *options,
+            f"-I{SOURCE_DIR / 'core_c/include'}", tmp_path / name)
+
+    section = PAGE.split("## In a firmware loop")[1]
+    compiled("loop.c", LOOP + re.findall(r"```c\n(.*?)```", section, re.DOTALL)[0], "-DLACONIC_SINGLE")
+    options: list[str] = []
+    rows = re.findall(r"^\| (.*) \| ([\d,]+) \|$", section.split("\n## ")[0], re.MULTILINE)
+    for build, size in rows:
+        options = [*(options if "…" in build else ["-DLACONIC_SINGLE"] if "float" in build else []),
+                   *re.findall(r"`(-D\S+)`", build)]
+        compiled("size.c", "#include <laconic/laconic.h>\n"
+                 f"typedef char size[sizeof(laconic_plant) == {size.replace(',', '')} ? 1 : -1];\n", *options)
+    assert len(rows) == 5
+
+
 @pytest.mark.nightly
 def test_its_command_makes_the_two_files_by_python_alone(tmp_path):
     command = re.search(r"^PYTHONPATH=.* python3 (.*) laconic$", PAGE, re.MULTILINE)
@@ -294,4 +321,4 @@ def test_the_node_its_drives_and_the_gate_do(macros):
     folders = [*FOLDERS, NODE / "include", NODE / "node", NODE / "drives"]
     files = [path for part in ("node", "wire", "secure", "drives") for path in (NODE / part).glob("**/*.c")]
     compiled(macros, [*folders, built("firmware_stub/wire")], sorted(files), "-DLACONIC_NODE_WITH_ESTIMATE=1",
-             "-DLACONIC_NODE_WITH_HINGES=1")
+             "-DLACONIC_NODE_WITH_HINGES=1", "-DLACONIC_NODE_WITH_XCP=1")

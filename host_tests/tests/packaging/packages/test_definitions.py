@@ -144,10 +144,10 @@ for name, library in loaded:
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names of plugins meet in ELF alone")
 @pytest.mark.parametrize("order", [
-    ("usual", "single", "four"), pytest.param(("single", "four", "usual"), marks=pytest.mark.nightly),
-    pytest.param(("four", "usual", "single"), marks=pytest.mark.nightly)])
+    ("usual", "single", "four"), ("single", "four", "usual"), ("four", "usual", "single")])
 def test_plugins_with_other_builds_in_one_process_call_their_own_functions(order, libraries):
     (libraries / "plugin.c").write_text(PLUGIN, encoding="utf-8")
     for name, options in PLUGINS.items():
@@ -220,7 +220,7 @@ def test_a_port_and_a_node_that_differ_do_not_link(definition, tmp_path):
     folders = [SOURCE_DIR / "core_c/include", SOURCE_DIR / "firmware_stub/include", wire]
     libraries = [built(f"firmware_stub/lib{name}.a") for name in ("laconic_node_double", "laconic_secure")]
     libraries += [built("firmware_stub/liblaconic_wire.a"), built("core_c/liblaconic.a")]
-    done = run(tmp_path, "-DLACONIC_NODE_WITH_ESTIMATE=1", "-DLACONIC_NODE_WITH_HINGES=1",
+    done = run(tmp_path, "-DLACONIC_NODE_WITH_ESTIMATE=1", "-DLACONIC_NODE_WITH_HINGES=1", "-DLACONIC_NODE_WITH_XCP=1",
                *([f"-D{definition}"] if definition else []),
                *(f"-I{folder}" for folder in folders), "port.c", *libraries, "-o", "port")
     if definition is None:

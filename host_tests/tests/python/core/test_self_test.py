@@ -49,7 +49,8 @@ def found(compiler: str, options: list[str], folder: Path, mode: str = "nearest"
 
 @needs_self_test
 @pytest.mark.parametrize("real", ["double", "single"])
-@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("compiler", [
+    pytest.param(each, marks=[pytest.mark.nightly] if each != COMPILERS[0] else []) for each in COMPILERS])
 @pytest.mark.parametrize(("options", "words"), [
     (SOUND, "0 sound"),
     ([*SOUND, *SILENCED["finite"]], "checks for NaN and infinity do not work"),

@@ -165,7 +165,8 @@ def test_the_command_tells_the_error_and_writes_it(tmp_path):
 
 
 @pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
-@pytest.mark.parametrize("method", ["auto", EXPLICIT, EXPLICIT_8])
+@pytest.mark.parametrize("method", [
+    "auto", *(pytest.param(each, marks=pytest.mark.nightly) for each in (EXPLICIT, EXPLICIT_8))])
 def test_a_watched_step_costs_at_most_three_fifths_more(capsys, method):
     program = str(built("bin/count_estimate"))
 

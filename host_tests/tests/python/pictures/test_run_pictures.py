@@ -65,7 +65,7 @@ def assert_legends_stand_apart(picture: Figure) -> None:
             assert over is None or min(over.width, over.height) < 2.0
 
 
-@pytest.mark.parametrize("wheels", [8, 12])
+@pytest.mark.parametrize("wheels", [8, pytest.param(12, marks=pytest.mark.nightly)])
 def test_legends_never_cover_curves(tmp_path, drawn, wheels):
     simulation_picture(ring(tmp_path, wheels, ground="friction_coefficient = 0.5\ncom_z_m = 0.2"), tmp_path / "run.png")
     assert_legends_stand_apart(drawn[0])

@@ -129,7 +129,7 @@ REFUSED = {
          "kind = \"fixed\"\nx_m = 1\ny_m = 1\naxle_deg = -90"), ("fixed wheels must meet in one point",)),
     "rounding of a start": (("[run]", "[initial]\nvelocity_body_m_per_s = [0.2, 0.1]\n[run]"), ("allow is 0\n",)),
     "missing roller angle": (('"fixed"', '"mecanum"'), ("wheel[1].roller_rad: is missing", "roller_deg")),
-    "key twice": (("mass_kg = 6.0", "mass_kg = 6.0\nmass_kg = 7.0"), ("mass_kg = 7.0",)),
+    "key twice": (("mass_kg = 6.0", "mass_kg = 6.0\nmass_kg = 7.0"), ("vehicle.mass_kg: is given twice", "keep one")),
     "empty name": (("[vehicle]", 'name = " "\n[vehicle]'), ("name: is empty",)),
     "rows further apart than the run is long": (("[outputs]", "[outputs]\nevery_s = 2.0"), ("every_s: 2 s is longer",)),
     "no signals": (('["wheel_torque_Nm[1]", "wheel_speed_rad_per_s[1]"]', "[]"), ("outputs.signals: is empty",)),

@@ -15,7 +15,7 @@ from laconic.tools.analyse.pictures_steady import driven_picture
 from scene_text import ideal_scene_names
 
 SCENES = ideal_scene_names()
-QUICK = ("s1", "paper_three_wheel_hopf", "paper_caster", "kuka_youbot", "turtlebot3_burger")
+QUICK = ("paper_three_wheel_hopf", "kuka_youbot")
 
 
 def run(capsys, *arguments):
@@ -81,7 +81,8 @@ def test_hopf_scene_reports_subcritical_and_an_unstable_cycle_confirmed_by_the_c
     assert all(cycle["confirmed"] and not cycle["stable"] for cycle in found["cycles"])
 
 
-@pytest.mark.parametrize(("parameter", "low", "high"), [("com_y_m", "-0.02", "0.05"), ("input_scale", "0", "2")])
+@pytest.mark.parametrize(("parameter", "low", "high"), [
+    ("com_y_m", "-0.02", "0.05"), pytest.param("input_scale", "0", "2", marks=pytest.mark.nightly)])
 def test_diagram_over_another_parameter(capsys, parameter, low, high):
     status, out, _ = run(capsys, "analyse", "paper_three_wheel_driven", "--only", "bifurcation", "--parameter",
                          parameter, "--from", low, "--to", high, "--json")

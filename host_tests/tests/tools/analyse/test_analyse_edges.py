@@ -247,7 +247,8 @@ def at(subject, command):
     return study(subject, StudyOptions(("steady", "bifurcation"), straight=(0.0, command)), lambda *_: None)
 
 
-@pytest.mark.parametrize("beside", [0.0, -1e-6, 1e-6, -1e-4, 1e-4])
+@pytest.mark.parametrize("beside", [
+    0.0, 1e-6, *(pytest.param(each, marks=pytest.mark.nightly) for each in (-1e-6, -1e-4, 1e-4))])
 def test_a_scene_at_a_hopf_point_or_a_little_beside_it_is_not_a_failure(subject, hopf, beside):
     assert at(subject, hopf * (1.0 + beside)).failures == []
 

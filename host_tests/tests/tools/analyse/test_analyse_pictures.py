@@ -119,7 +119,9 @@ def test_wheels_whose_curves_coincide_are_drawn_one_inside_the_other():
     assert len({alternating_markers(i, 6) for i in range(6)}) == 6
 
 
-@pytest.mark.parametrize(("name", "beside"), [("portrait", "m/s"), ("driven_portrait", "m/s"), ("bifurcation", "m/s")])
+@pytest.mark.parametrize(("name", "beside"), [
+    ("portrait", "m/s"), *(pytest.param(each, "m/s", marks=pytest.mark.nightly)
+                           for each in ("driven_portrait", "bifurcation"))])
 def test_axes_in_rad_per_second_have_one_in_metres_per_second_with_the_same_zero(hopf, name, beside, drawn):
     (axes,) = drawn(hopf, name).axes
     labels = [f"{second.get_xlabel()} {second.get_ylabel()}" for second in axes.child_axes]

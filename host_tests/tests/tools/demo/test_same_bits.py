@@ -18,7 +18,7 @@ FMU_EVERY, NODE_EVERY = 3, 7
 
 
 # Of the other scenes `laconic demo` compares every participant, and test_fmu_bits.py the FMUs.
-QUICK = {"s1", "skid_steer", "kuka_youbot", "paper_caster", "robotino_grey", "turtlebot3_burger"}
+QUICK = {"s1", "skid_steer", "kuka_youbot"}
 SCENES = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.nightly]) for name in rigid_scene_names()]
 
 
@@ -62,7 +62,7 @@ def test_node_over_can_gives_the_cores_bits(name, expected):
     assert difference(found, core_of(scene, expected), scene.wheel_count) == ""
 
 
-@pytest.mark.parametrize("name", ["s1", "kuka_youbot"])
+@pytest.mark.parametrize("name", ["s1", pytest.param("kuka_youbot", marks=pytest.mark.nightly)])
 def test_node_in_single_precision_gives_the_single_cores_bits(name, expected):
     scene = long_enough(name).with_run(real="single")
     found = node_rows(scene, scene.steps(), NODE_EVERY)
@@ -70,7 +70,8 @@ def test_node_in_single_precision_gives_the_single_cores_bits(name, expected):
     assert difference(found, core_of(scene, expected), scene.wheel_count) == ""
 
 
-@pytest.mark.parametrize("method", METHODS[1:])
+@pytest.mark.parametrize("method", [
+    *METHODS[1:3], *(pytest.param(each, marks=pytest.mark.nightly) for each in METHODS[3:])])
 def test_every_method_gives_the_same_bits_everywhere(method, tmp_path):
     scene = read_scene("s1").with_run(method=method)
     core = core_rows(scene, 1000)

@@ -26,6 +26,8 @@ from laconic.tools.derive.tree_printing import tree_c, tree_latex, tree_text
 from laconic.tools.derive.tree_system import Tree, derive_tree, energy_of_twists, tree_numbers
 
 HINGED = [name for name in scene_names() if file_has_hinges(scene_path(name))]
+QUICK = ("f1tenth", "tricycle_agv", "wheel_loader", "wheelchair")
+EVERY = [name if name in QUICK else pytest.param(name, marks=pytest.mark.nightly) for name in (*HINGED, "on a slope")]
 SIDE = {"kind": "fixed", "axle_deg": -90.0, "x_m": 0.0}
 
 
@@ -64,7 +66,7 @@ def test_there_are_eight_scenes_with_hinges() -> None:
     assert len(HINGED) >= 8
 
 
-@pytest.mark.parametrize("name", [*HINGED, "on a slope"])
+@pytest.mark.parametrize("name", EVERY)
 def test_derived_equations_of_a_tree_give_the_cores_accelerations(name: str) -> None:
     assert tree_core_difference(*derived(name), count=40) < 1e-11
 
@@ -82,7 +84,8 @@ def test_both_checks_notice_a_wrong_equation() -> None:
     assert tree_forms_difference(wrong) > 1e-3 and tree_core_difference(wrong, vehicle, count=5) > 1e-6
 
 
-@pytest.mark.parametrize("name", ["tugger_train", "pr2_base"])
+@pytest.mark.parametrize("name", ["wheel_loader", *(
+    pytest.param(name, marks=pytest.mark.nightly) for name in ("tugger_train", "pr2_base"))])
 def test_the_printed_energy_of_the_twists_is_the_lagrangian_on_the_motions(name: str) -> None:
     tree, _ = derived(name)
     pair = [tree.lagrangian, energy_of_twists(tree.numbers, tree.twists)]
@@ -106,7 +109,7 @@ def compiled(tree: Tree, folder: Path) -> tuple[FFI, Any, Any]:
     return ffi, getattr(linked, f"laconic_{name}_rates"), getattr(linked, f"laconic_{name}_motion")
 
 
-@pytest.mark.parametrize("name", [*HINGED, "on a slope"])
+@pytest.mark.parametrize("name", EVERY)
 def test_printed_c_of_a_tree_compiles_and_gives_the_cores_motion(name: str, tmp_path: Path) -> None:
     tree, vehicle = derived(name)
     ffi, rates, motion = compiled(tree, tmp_path)

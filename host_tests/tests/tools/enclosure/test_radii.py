@@ -41,7 +41,8 @@ def end_of(equation: Equation, nu: list, values: dict, radius: float = 0.0) -> S
 
 @pytest.mark.parametrize(("scene", "nu"), [("paper_three_wheel_hopf", (31, 2, 11)), ("s1", (3, -8, 2)),
                                            ("robotino2", (5, 4, -6)), ("paper_three_wheel_free", (0, 6, 1))])
-@pytest.mark.parametrize("values", [{}, PUSH, {"body_force_N[1]": Fraction(7), "body_moment_Nm": Fraction(1, 3)}])
+@pytest.mark.parametrize("values", [PUSH, *(pytest.param(each, marks=pytest.mark.nightly) for each in (
+    {}, {"body_force_N[1]": Fraction(7), "body_moment_Nm": Fraction(1, 3)}))])
 def test_every_motion_that_starts_in_a_ball_ends_inside_its_enclosure(scene, nu, values):
     source = random.Random(5)
     with precision(128):

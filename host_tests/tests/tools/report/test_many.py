@@ -236,7 +236,7 @@ COARSE = {"step 1 s": METHODS, "step 1 s, fast to slow damping 10⁹": ("auto",)
 
 @pytest.mark.parametrize("case, real, method", [
     pytest.param(case, real, method, id=f"{case.name}-{real}-{method}",
-                 marks=[pytest.mark.nightly] if (case.name, real, method) in SLOW else [])
+                 marks=[pytest.mark.nightly] if real == "single" or (case.name, real, method) in SLOW else [])
     for case in CASES for real in REALS for method in METHODS])
 def test_extreme(case: Extreme, real: str, method: str):
     with np.errstate(all="ignore"):

@@ -332,8 +332,9 @@ def tree_sources(scene: Scene, real: str, folder: Path) -> tuple[list[str], list
 
 
 @needs_gcc
-@pytest.mark.parametrize(("name", "real"), [("mir_like", "double"), ("frc_swerve_mk4i", "single"), *(
+@pytest.mark.parametrize(("name", "real"), [("mir_like", "double"), *(
     pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("frc_swerve_mk4i", "single"),
         ("f1tenth", "double"), ("tricycle_agv", "single"), ("pr2_base", "double"), ("tugger_train", "single"),
         ("wheel_loader", "double"), ("wheelchair", "single")))])
 def test_a_trimmed_core_with_hinges_gives_the_same_bits_as_the_whole_one(name: str, real: str, tmp_path: Path):

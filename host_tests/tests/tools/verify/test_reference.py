@@ -188,6 +188,7 @@ def errors_where(is_meant: Callable[[float], bool], longest_s: float, most_yaw_r
         yield [float(np.abs(end_of(vehicle, step_s / k, STEPS * k) - true).max() / size) for k in (1, 2)]
 
 
+@pytest.mark.nightly
 def test_half_a_step_errs_at_least_200_times_less_where_both_have_as_many_panels():
     pairs = list(errors_where(lambda h_r: not WHOLE_DECAY < h_r <= 2 * WHOLE_DECAY, 0.1, 1.5))
     slopes = [np.log2(whole / half) for whole, half in pairs if half > ROUNDING]
@@ -196,6 +197,7 @@ def test_half_a_step_errs_at_least_200_times_less_where_both_have_as_many_panels
     assert min(slopes) >= 7.7
 
 
+@pytest.mark.nightly
 def test_where_half_a_step_loses_its_panels_nothing_but_rounding_is_seen():
     pairs = list(errors_where(lambda h_r: WHOLE_DECAY < h_r <= 2 * WHOLE_DECAY, 0.03, 0.3))
     assert len(pairs) > 200

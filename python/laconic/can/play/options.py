@@ -41,15 +41,7 @@ class PlayOptions:
     seed: int | None = None
     stop_within_s: float | None = None
     stop_distance_m: float | None = None
-    bag: Path | None = None
-    storage: str | None = None
-    foxglove: Path | None = None
-    rerun: Path | None = None
-
-    @property
-    def recorded(self) -> Recorded:
-        """Where the run is written or shown besides its log."""
-        return Recorded(self.bag, self.storage, self.foxglove, self.rerun)
+    recorded: Recorded = Recorded()  # where the run is written or shown besides its log
 
     @property
     def is_served(self) -> bool:

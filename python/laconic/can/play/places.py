@@ -25,6 +25,7 @@ from laconic.can.play.options import PlayOptions, controller_bus
 from laconic.can.play.protocols import OF_MAP
 from laconic.can.play.settings import DriveSettings, drive_settings
 from laconic.can.play.vehicle import played, silent_sensors
+from laconic.can.rig.bagged import check_rigid
 from laconic.can.rig.boards import own_node
 from laconic.can.rig.buses import connected, node_in_process, node_process
 from laconic.can.rig.choices import ON_BUS
@@ -193,7 +194,7 @@ class OfNode(Place):
 
 def place_of(scene: Scene, options: PlayOptions) -> Place:
     """The place that the options choose; BadInput for what is wrong with scene, drives, DBC or map."""
-    if scene.has_hinges and (options.dbc is not None or options.bag is not None):
-        raise BadInput(f"{scene.path}: --{'dbc' if options.dbc is not None else 'bag'} does not take vehicles with "
-                       "hinges yet; leave it out" + ("" if options.dbc is None else ", and give --drives"))
+    check_rigid(scene, options.recorded)
+    if scene.has_hinges and options.dbc is not None:
+        raise BadInput(f"{scene.path}: --dbc does not take vehicles with hinges yet; leave it out, and give --drives")
     return OfMap(scene, options) if options.dbc is not None else OfNode(scene, options)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -56,22 +56,28 @@ def coasts_for_ever(scene: Scene) -> bool:
     return not any(table.get(key) for table in tables for key in BRAKES)
 
 
-def moved_inertia(scene: Scene, driven: Sequence[bool]) -> tuple[float, ...]:
+def moved_inertia(scene: Scene, driven: Sequence[bool], radius_m: Sequence[float] | None = None) -> tuple[float, ...]:
     """The inertia about each wheel's axle that its drive turns [kg·m²]: the wheel's own, rotor included, and a share of
     the vehicle's mass, which all drives move together. Behind the wheels that of each hinge about its axis: its body's.
+    `radius_m`: what the wheels' radii are taken for, instead of the scene's.
     """
     core, bodies = scene.core(), scene.vehicle["body"] if scene.has_hinges else ()
-    vehicle = scene.articulated_vehicle(core).c.base if scene.has_hinges else scene.c_vehicle(core)
+    whole = scene.articulated_vehicle(core) if scene.has_hinges else None  # owns the memory of its base
+    vehicle = whole.c.base if whole else scene.c_vehicle(core)
     mass_kg = float(vehicle.mass_kg) + float(vehicle.payload.mass_kg) + sum(body["mass_kg"] for body in bodies)
     found, count = [], scene.wheel_count
-    for wheel, has_drive in zip(vehicle.wheel, driven[:count], strict=False):
-        radius_m = float(wheel.own_radius_m or vehicle.wheel_radius_m)
+    for at, (wheel, has_drive) in enumerate(zip(vehicle.wheel, driven[:count], strict=False)):
+        radius = float(wheel.own_radius_m or vehicle.wheel_radius_m) if radius_m is None else float(radius_m[at])
         own_kgm2 = float(wheel.own_inertia_kgm2 or vehicle.wheel_inertia_kgm2)
-        found.append(own_kgm2 + mass_kg * radius_m**2 / sum(driven[:count]) if has_drive else 0.0)
-    for body, has_drive in zip(bodies, driven[count:], strict=True):
-        arm_m = math.hypot(body.get("com_x_m", 0.0), body.get("com_y_m", 0.0))
-        found.append(body["yaw_inertia_kgm2"] + body["mass_kg"] * arm_m**2 if has_drive else 0.0)
+        found.append(own_kgm2 + mass_kg * radius**2 / sum(driven[:count]) if has_drive else 0.0)
+    found += [about_hinge(body) if has_drive else 0.0 for body, has_drive in zip(bodies, driven[count:], strict=True)]
     return tuple(found)
+
+
+def about_hinge(body: Mapping[str, Any]) -> float:
+    """The inertia of a body about its hinge [kg·m²]."""
+    arm_m = math.hypot(body.get("com_x_m", 0.0), body.get("com_y_m", 0.0))
+    return float(body["yaw_inertia_kgm2"] + body["mass_kg"] * arm_m**2)
 
 
 def check_playable(scene: Scene) -> None:

@@ -123,7 +123,6 @@ def played_views(vehicle: Any, scene: Scene, recorded: Recorded) -> Iterator[lis
     if not recorded:
         yield []
         return
-    check_rigid(scene, recorded)
     if (look := getattr(vehicle, "signals", None)) is None:
         raise BadInput(f"{recorded.first}: needs a vehicle in this process, whose motion can be seen; leave --board "
                        "out")

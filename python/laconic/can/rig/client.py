@@ -145,9 +145,9 @@ class NodeClient:
         return name.lower() if number is None else self.wire.choice("CONTROL", "command", number)
 
     def check(self, result: dict[str, int]) -> None:
-        """Remembers the state; raises the refusal."""
+        """Remembers the state; raises the refusal, except that of numbers that an XCP master sent."""
         self.state = self.wire.choice("RESULT", "state", result["state"])
-        if result["status"]:
+        if result["status"] and result["command"] != self.wire.number("RESULT", "command", "CALIBRATE"):
             raise NodeRefused(self.wire.choice("RESULT", "command", result["command"]),
                               self.wire.choice("RESULT", "status", result["status"]),
                               self.wire.choice("RESULT", "field", result["field"]), result["item"], self.state)

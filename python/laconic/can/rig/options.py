@@ -45,15 +45,7 @@ class Options:
     key: Path | None
     junit: Path | None
     json_wanted: bool
-    bag: Path | None = None
-    storage: str | None = None
-    foxglove: Path | None = None
-    rerun: Path | None = None
-
-    @property
-    def recorded(self) -> Recorded:
-        """Where the run is written or shown besides its log."""
-        return Recorded(self.bag, self.storage, self.foxglove, self.rerun)
+    recorded: Recorded = Recorded()  # where the run is written or shown besides its log
 
 
 def read_id_base(given: str | None, scene: Scene | None) -> int:

@@ -36,7 +36,8 @@ def sensor_parameters(scene: Scene, plant: Plant) -> Iterator[Parameter]:
     """The settings of the scene's sensors; what is 0 is left out."""
     if not has_sensors(scene):
         return
-    settings = scene.sensors_of(plant).c.settings
+    sensors = scene.sensors_of(plant)  # owns the memory of its settings
+    settings = sensors.c.settings
     for field in plant.core.sensor_fields:
         for item, value in enumerate(values_of(field, settings), start=int(field.items > 0)):
             if value != 0:

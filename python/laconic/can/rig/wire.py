@@ -107,13 +107,15 @@ def field_of(signal: Any) -> Field:
 
 
 class Wire:
-    """All messages, by name and by identifier offset."""
+    """All messages between rig and node, by name and by identifier offset; `xcp`: those of an XCP master and slave."""
 
     def __init__(self, database: Database):
         definitions = database.dbc.attribute_definitions if database.dbc else {}
         defaults = {name: each.default_value for name, each in definitions.items()}
         self.database = database
-        self.frames = {message.name: Frame(message, defaults) for message in database.messages}
+        every = {message.name: Frame(message, defaults) for message in database.messages}
+        self.frames = {name: each for name, each in every.items() if each.attributes["E2EProfile"] != "none"}
+        self.xcp = {name: each for name, each in every.items() if name not in self.frames}
         self.by_offset = {frame.offset: frame for frame in self.frames.values()}
 
     def __getitem__(self, name: str) -> Frame:

@@ -46,7 +46,8 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
 
     Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
-    FMI 2.0 and with --scalar it is a constant. With --derivatives or --estimate the FMU is for Co-Simulation alone.
+    FMI 2.0 and with --scalar it is a constant. With --derivatives or --estimate the FMU is for Co-Simulation alone, as
+    is that of a vehicle with hinges on ground with friction.
     With --bus can it is the CAN node of SCENE, for co-simulation with other FMUs on a bus.
     """
     check_bus(version, bus, {"--scalar": scalar, "--ssp": ssp, "--no-enumerations": no_enumerations,

@@ -15,7 +15,6 @@ from laconic.cli.options import (
     OutputFile,
     SceneName,
     check_step,
-    check_storage,
     goes_with,
     json_flag,
     one_of,
@@ -28,6 +27,7 @@ from laconic.scene.drives import DRIVE_PROTOCOLS
 
 if TYPE_CHECKING:
     from laconic.can.rig.verdict import Judgement
+    from laconic.scene import Scene
 
 
 @click.command("play")
@@ -62,34 +62,49 @@ if TYPE_CHECKING:
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc, .mf4.")
 @recorded_options
 @click.option("--live", is_flag=True, help="Show the frames while it plays.")
+@click.option("--ardupilot", "is_ardupilot", is_flag=True,
+              help="Instead of a bus: ArduPilot's JSON interface, UDP port 9002 or that of --listen, in lockstep. "
+              "Protocol tested, autopilot not.")
 @click.option("--eds", type=OutputFile(".eds"), metavar="FILE",
               help="Write the EDS file of the CANopen drives, for the controller's configuration, and play nothing.")
 @click.option("--junit", type=OutputFile(".xml"), help="Results for CI.")
 @json_flag()
 def command(scene_name: str, method: str | None, real: str | None, step_s: float | None, junit: Any,
-            eds: Any, json_wanted: bool, **given: Any) -> int:
+            eds: Any, is_ardupilot: bool, json_wanted: bool, **given: Any) -> int:
     """Plays the vehicle of SCENE on a CAN bus in real time, for a controller that someone else wrote.
 
     --drives speaks the protocol of its motor drives, or --dbc and --map say what its frames mean. Without an interface
     of your own, --listen 0 prints a port at which python-can's slcan connects. Lateness is printed at the end. Exit
     status: 0 if the user or --duration ended it; 1 if the bus died, a step was refused or a watchdog fired; 2 for bad
-    input.
+    input. --ardupilot plays it for an autopilot instead.
     """
     from laconic.can.play.canopen_eds import eds_of_scene
     from laconic.can.play.options import PlayOptions
     from laconic.can.play.session import play
 
     check_step(step_s)
-    check_storage(given["bag"], given["storage"])
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")
         write_text(eds, eds_of_scene(scene, given["drives"]))
         return 0
     began = time.perf_counter()
+    if is_ardupilot:
+        goes_with("--ardupilot", "--listen", "--duration", "--method", "--real", "--step", "--junit", "--json")
+        judgement = for_autopilot(scene, given["listen"], given["duration_s"], json_wanted)
+        present(judgement, junit, time.perf_counter() - began, json_wanted=json_wanted)
+        return judgement.exit_status
     judgement = play(scene, PlayOptions(**given), say=lambda text: click.echo(text, err=json_wanted))
     present(judgement, junit, time.perf_counter() - began, json_wanted=json_wanted)
     return judgement.exit_status
+
+
+def for_autopilot(scene: Scene, port: int | None, duration_s: float | None, json_wanted: bool) -> Judgement:
+    """Plays the vehicle behind ArduPilot's JSON interface."""
+    from laconic.robot.ardupilot.server import USUAL_PORT, play_ardupilot
+
+    return play_ardupilot(scene, port=USUAL_PORT if port is None else port, duration_s=duration_s,
+                          say=lambda text: click.echo(text, err=json_wanted))
 
 
 def present(judgement: Judgement, junit: Any, seconds: float, *, json_wanted: bool) -> None:

@@ -14,7 +14,6 @@ from laconic.cli.options import (
     OutputFile,
     SceneName,
     belongs_to,
-    check_storage,
     goes_with,
     json_flag,
     one_of,
@@ -78,7 +77,6 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
     only_one({"--same-bits": same_bits, "--free-run": free_run, "--replay": given["replay"] is not None})
     belongs_to("--same-bits", same_bits, "--every", "--fd")
     belongs_to("--free-run", free_run, "--rate", "--watchdog")
-    check_storage(given["bag"], given["storage"])
     options = Options(mode=mode.removeprefix("--"), **given)
     if ending := only_one({"--stop": stop, "--reset": reset}):
         goes_with(ending, *CONNECTION, "--json")

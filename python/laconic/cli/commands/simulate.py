@@ -19,7 +19,6 @@ from laconic.cli.options import (
     all_methods,
     belongs_to,
     check_step,
-    check_storage,
     json_flag,
     one_of,
     recorded_options,
@@ -36,6 +35,7 @@ from laconic.scene.standing import Standing, standing_of
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
 from laconic.simulation.articulated import HingeErrors, HingeErrorSizes
 from laconic.simulation.csv_text import csv_text
+from laconic.simulation.loads import Loads
 from laconic.simulation.run import is_watched
 
 FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
@@ -64,7 +64,7 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
             plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool,
-            enclose_wanted: bool, json_wanted: bool, **views: Any) -> None:
+            enclose_wanted: bool, json_wanted: bool, recorded: Recorded) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. With a friction
@@ -76,8 +76,6 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs", "--errors")
-    check_storage(views["bag"], views["storage"])
-    recorded = Recorded(**views)
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     if given.has_hinges:
         not_with_hinges(given, enclose_wanted)
@@ -112,6 +110,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if run.least_margin and run.least_margin[0] < 0.0:
         warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
              f"slip, by {-run.least_margin[0]:.3g} N")
+    if run.lifted:
+        wheel, time_s = run.lifted
+        warn(f"{given.path}: at {time_s:g} s wheel {wheel} lifts from the ground; the run holds the vehicle level")
     for line in () if given.has_hinges else nearly_one_line(given):
         warn(f"{given.path}: {line}")
     if (standing := resting(run)) and standing.tips:
@@ -177,7 +178,12 @@ def enclosed(run: Trajectory) -> Enclosure:
 
 def resting(run: Trajectory) -> Standing | None:
     """How the robot stands where the scene has data of the ground."""
-    return standing_of(run.scene) if is_watched(run.scene) else None
+    scene = run.scene
+    if scene.has_hinges:
+        vehicle = scene.vehicle
+        has_ground = vehicle["friction_coefficient"] or vehicle["com_z_m"] or scene.slips_on_hinges
+        return Loads(scene).standing([hinge.start_angle_rad for hinge in scene.hinges]) if has_ground else None
+    return standing_of(scene) if is_watched(scene) else None
 
 
 def words_of_standing(run: Trajectory) -> list[str]:
@@ -215,6 +221,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else margin_json(run),
         "limited": [asdict(each) for each in run.limited], "folded": [asdict(each) for each in run.folded],
+        "lifted": {"wheel": run.lifted[0], "time_s": run.lifted[1]} if run.lifted else None,
         "standing": standing.as_json() if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}

@@ -20,6 +20,7 @@ from laconic.tools.analyse.hinged_turns import BodyCircle, Tree, tree_of
 
 SPEEDS_M_PER_S = (1.0, -1.0)
 AGREEMENT = 1e-9  # between the angles and rates of a turn and the core's, in SI
+SAME_RAD = 1e-9       # rounding of an angle
 ROUNDING = 1e-12  # of the largest voltage
 STEADY = 1e-9     # of the accelerations without voltages
 TITLES = {"limits": "Tightest turns", "turns": "Steady turns", "straight": "Straight motion"}
@@ -76,7 +77,7 @@ def study_hinges(scene: Scene, *, speeds_m_per_s: Sequence[float] = SPEEDS_M_PER
         if not finite_number("--speed", speed):
             raise BadInput("--speed: is 0; give a speed to go straight at, in m/s")
     asked = [(f"curvature {k:g}/m", _curvature(k)) for k in curvatures_per_m]
-    asked += [(f"{name} at {math.degrees(finite_number('--steering', angle)):.4g}°", tree.curvature_of(name, angle))
+    asked += [(_steered_to(name, finite_number("--steering", angle)), tree.curvature_of(name, angle))
               for name, angle in steering]
     limits = {} if tree.turn is None else {"left": tree.limit(1), "right": tree.limit(-1)}
     if asked and tree.turn is None:
@@ -95,6 +96,13 @@ def study_hinges(scene: Scene, *, speeds_m_per_s: Sequence[float] = SPEEDS_M_PER
     found.words = {"limits": _limit_words(found), "turns": [_turn_words(tree, turn) for turn in found.turns],
                    "straight": _straight_words(found, sloped)}
     return found
+
+
+def _steered_to(name: str, angle_rad: float) -> str:
+    """In words; a wheel turned by half a turn rolls along the same line."""
+    near_rad = math.remainder(angle_rad, math.pi)
+    same = "" if abs(near_rad - angle_rad) < SAME_RAD else f", where it rolls as at {math.degrees(near_rad):.4g}°"
+    return f"{name} at {math.degrees(angle_rad):.4g}°{same}"
 
 
 def _curvature(given: float) -> float:

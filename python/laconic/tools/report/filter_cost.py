@@ -80,7 +80,8 @@ def derivation_of(scene: Scene) -> str:
     """The core's name of what differentiates the scene's steps; of auto that of the row of methods that it chose."""
     method = scene.run.method
     if method == "auto":
-        method = f"auto_{'fast' if scene.plant(load('double')).c.integrator.stiff else 'slow'}"
+        plant = scene.plant(load("double"))  # owns the memory of its integrator
+        method = f"auto_{'fast' if plant.c.integrator.stiff else 'slow'}"
     return f"laconic_derivation_of_{method.replace('-', '_')}"
 
 

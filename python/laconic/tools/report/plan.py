@@ -22,8 +22,8 @@ def plan(scene: Scene) -> str:
     """Body axes ξ ahead (up), η to the left; wheels from above, the roller that touches the ground as a line."""
     picture = figure(*SIZE)
     axes = picture.add_subplot()
-    model = scene.with_run(real="double").plant(load("double")).c.model
-    radius = float(model.wheel_radius_m)
+    plant = scene.with_run(real="double").plant(load("double"))  # owns the memory of its model
+    radius = float(plant.c.model.wheel_radius_m)
     for number, wheel in enumerate(scene.vehicle["wheel"], start=1):
         _wheel(axes, wheel, number, wheel.get("radius_m") or radius)
     for support in scene.vehicle["support"]:

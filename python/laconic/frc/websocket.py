@@ -1,0 +1,229 @@
+"""The robot behind WPILib's simulation WebSocket, for robot programs in Java, C++ or Python.
+
+The program runs with WPILib's WebSocket server (halsim_ws_server). This is its client, the hardware: it hears outputs
+as they change, moves the robot in real time in cycles of 20 ms, and sends encoders, gyro and battery. Names of messages
+and data are those of WPILib's specification of that protocol.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from laconic.errors import BadInput, words_of
+from laconic.frc.drivetrain import Drivetrain, Motion
+from laconic.scene.base import Device
+
+URL = "ws://127.0.0.1:3300/wpilibws"
+PERIOD_S = 0.02
+MODES = ("auto", "teleop", "test")
+TURN = 2.0 * math.pi
+NEVER_S = 1e30            # between two counts of an encoder that stands
+FULL_SCALE_V = 5.0
+CONNECT_S = 0.25          # between two tries to connect
+Message = tuple[str, str, dict[str, Any]]  # type, device, data
+
+
+@dataclass
+class Figures:
+    """What a run leaves."""
+
+    cycles: int = 0
+    late_cycles: int = 0             # a period or more behind
+    heard: int = 0
+    sent: int = 0
+    least_battery_V: float = math.inf  # noqa: N815
+    cycle_s: list[float] = field(default_factory=list)
+
+
+def data_key(device: Device) -> tuple[str, str, str]:
+    """Type and device of the message that sets an output, and the key of its data."""
+    if device.kind == "PWM":
+        return "PWM", device.name, "<speed"
+    if device.kind == "CANMotor":
+        return "CANMotor", device.name, "<percentOutput"
+    return "SimDevice", device.name, f"<{device.value}"
+
+
+class Bridge:
+    """One robot of a scene and one robot program; `run` lasts until the program or the time ends."""
+
+    def __init__(self, robot: Drivetrain, url: str = URL, mode: str | None = None,
+                 say: Callable[[str], None] = lambda text: None):
+        self.robot, self.url, self.mode, self._say = robot, checked(url), mode, say
+        table, path = robot.table, robot.scene.path
+        for name, devices in (("drive", table.drive), ("steering", table.steering)):
+            if not devices and (name == "drive" or robot.steered_count):
+                raise BadInput(f'{path}: frc.{name}: is missing; name the output of each motor, such as "PWM[0]"')
+        self._outputs: dict[tuple[str, str, str], float] = {
+            data_key(device): 0.0 for device in (*table.drive, *table.steering)}
+        self._encoders: dict[int, str] = {}   # number of the message by channel A
+        self._is_on, self._seen = False, set[str]()
+        self.figures = Figures()
+        self.watch: Callable[[float, Motion], None] = lambda time_s, motion: None
+
+    # ---- what the program sends
+
+    def hear(self, text: str | bytes) -> None:
+        """Takes a message; what is not of the protocol is ignored, as it demands."""
+        try:
+            message = json.loads(text)
+        except ValueError:
+            return
+        if not isinstance(message, dict):
+            return
+        kind, device, data = (message.get(key) for key in ("type", "device", "data"))
+        if not (isinstance(kind, str) and isinstance(device, str) and isinstance(data, dict)):
+            return
+        self.figures.heard += 1
+        for key, value in data.items():
+            place = (kind, device, key)
+            if place in self._outputs and isinstance(value, int | float) and math.isfinite(value):
+                self._outputs[place] = float(value)
+                self._seen.add(f"{kind}[{device}]")
+        if kind == "Encoder" and isinstance(channel := data.get("<channel_a"), int):
+            self._encoders[channel] = device
+        if kind == "DriverStation" and isinstance(on := data.get(">enabled"), bool):
+            self._is_on = on
+
+    def _of(self, devices: tuple[Device, ...]) -> list[float]:
+        return [device.sign * self._outputs[data_key(device)] if self._is_on else 0.0 for device in devices]
+
+    # ---- what it reads
+
+    def messages(self, motion: Motion) -> list[Message]:
+        """Encoders, gyro and battery of this moment."""
+        table, found = self.robot.table, list[Message]()
+        for devices, counts, angles, rates in (
+                (table.drive_encoder, table.drive_counts, motion.wheel_angle_rad, motion.wheel_speed_rad_per_s),
+                (table.steering_encoder, table.steering_counts, motion.steering_angle_rad,
+                 motion.steering_rate_rad_per_s)):
+            for device, angle, rate in zip(devices, angles, rates, strict=False):
+                found += self._encoder(device, counts, device.sign * angle, device.sign * rate)
+        if table.gyro:
+            found.append(gyro_message(table.gyro, motion))
+        battery = self.robot.battery
+        found.append(("RoboRIO", "", {">vin_voltage": battery.voltage_V, ">vin_current": battery.current_A}))
+        if self.mode:
+            found.append(("DriverStation", "", {
+                ">ds": True, ">enabled": True, ">autonomous": self.mode == "auto", ">test": self.mode == "test",
+                ">new_data": True}))
+        return found
+
+    def _encoder(self, device: Device, counts: float, angle: float, rate: float) -> list[Message]:
+        if device.kind == "Encoder":
+            number = self._encoders.get(int(device.name))
+            speed = rate * counts / TURN
+            return [("Encoder", number, {">count": math.floor(angle * counts / TURN),
+                                         ">period": 1.0 / speed if speed else NEVER_S})] if number is not None else []
+        share = (angle / TURN) % 1.0
+        kind, name, data = {
+            "AnalogInput": ("AI", device.name, {">voltage": FULL_SCALE_V * share}),
+            "DutyCycleEncoder": ("DutyCycle", f"DutyCycleEncoder[{device.name}]", {">Position": share,
+                                                                                  ">position": share}),
+            "AnalogEncoder": ("SimDevice", f"AnalogEncoder[{device.name}]", {">Position": share}),
+            "CANEncoder": ("CANEncoder", device.name, {">position": angle / TURN, ">velocity": rate / TURN}),
+            "CANDutyCycle": ("CANDutyCycle", device.name, {">position": share}),
+            "SimDevice": ("SimDevice", device.name, {f">{device.value}": angle / TURN})}[device.kind]
+        return [(kind, name, data)]
+
+    # ---- the run
+
+    async def run(self, duration_s: float = math.inf, connect_s: float = 10.0) -> None:
+        """Connects and plays; BadInput where no program answers in time."""
+        from websockets.exceptions import ConnectionClosed
+
+        socket = await self._connect(connect_s)
+        listener = asyncio.create_task(self._listen(socket))
+        try:
+            await self._play(socket, listener, duration_s)
+        except ConnectionClosed:
+            self._say("the robot program closed the connection")
+        finally:
+            listener.cancel()
+            await socket.close()
+        missing = [device.text.lstrip("-") for device in (*self.robot.table.drive, *self.robot.table.steering)
+                   if f"{data_key(device)[0]}[{data_key(device)[1]}]" not in self._seen]
+        if missing:
+            self._say(f"heard nothing of {', '.join(dict.fromkeys(missing))}; compare [frc] with the program's ports")
+
+    async def _connect(self, connect_s: float) -> Any:
+        from websockets.asyncio.client import connect
+        from websockets.exceptions import InvalidHandshake, InvalidURI
+
+        ends, reason = time.monotonic() + connect_s, "it does not answer"
+        while True:
+            try:
+                return await connect(self.url, open_timeout=max(connect_s, 1.0))
+            except InvalidURI:
+                raise BadInput(f"--url {self.url}: is not the address of a WebSocket; give one such as {URL}") from None
+            except InvalidHandshake:
+                raise BadInput(f"--url {self.url}: what answers there refused the connection; WPILib's server has the "
+                               "path /wpilibws, and takes one client") from None
+            except (OSError, TimeoutError) as error:
+                reason = words_of(error, reason)
+            if time.monotonic() > ends:
+                raise BadInput(f"--url {self.url}: no robot program answers there; start it in simulation with the "
+                               "WebSocket server, such as robotpy sim --nogui --ws-server")
+            await asyncio.sleep(CONNECT_S)
+
+    async def _listen(self, socket: Any) -> None:
+        async for text in socket:
+            self.hear(text)
+
+    async def _play(self, socket: Any, listener: asyncio.Task[None], duration_s: float) -> None:
+        due = time.monotonic()
+        while self.figures.cycles * PERIOD_S < duration_s - 1e-9 and not listener.done():
+            cycle = time.perf_counter()
+            self.robot.run(PERIOD_S, self._of(self.robot.table.drive), self._of(self.robot.table.steering))
+            motion = self.robot.motion()
+            messages = self.messages(motion)
+            self.figures.cycle_s.append(time.perf_counter() - cycle)
+            for kind, device, data in messages:
+                await socket.send(json.dumps({"type": kind, "device": device, "data": data}))
+            self.figures.sent += len(messages)
+            self.figures.cycles += 1
+            self.figures.least_battery_V = min(self.figures.least_battery_V, self.robot.battery_V)
+            self.watch(self.figures.cycles * PERIOD_S, motion)
+            due += PERIOD_S
+            wait = due - time.monotonic()
+            if wait < -PERIOD_S:
+                self.figures.late_cycles += 1
+                due = time.monotonic()
+            await asyncio.sleep(max(wait, 0.0))
+        if listener.done():
+            self._say("the robot program closed the connection")
+
+
+def gyro_message(device: Device, motion: Motion) -> Message:
+    """A gyro of one axis counts clockwise; one on CAN about z, counter-clockwise."""
+    angle = device.sign * math.degrees(motion.heading_rad)
+    rate = device.sign * math.degrees(motion.yaw_rate_rad_per_s)
+    if device.kind == "CANGyro":
+        return "CANGyro", device.name, {">angle_z": angle, ">rate_z": rate}
+    if device.kind == "SimDevice":
+        return "SimDevice", device.name, {f">{device.value}": -angle}
+    return "Gyro", f"{device.kind}[{device.name}]", {">angle_x": -angle, ">rate_x": -rate}
+
+
+def checked(url: str) -> str:
+    """The address, or BadInput for one that is not of a WebSocket."""
+    if not url.startswith(("ws://", "wss://")):
+        raise BadInput(f"--url {url}: is not the address of a WebSocket; give one such as {URL}")
+    return url
+
+
+def figures_of(bridge: Bridge) -> Mapping[str, Any]:
+    """The run in numbers."""
+    motion, figures = bridge.robot.motion(), bridge.figures
+    cycles = sorted(figures.cycle_s) or [0.0]
+    return {"cycles": figures.cycles, "late_cycles": figures.late_cycles, "heard": figures.heard, "sent": figures.sent,
+            "cycle_median_ms": 1e3 * cycles[len(cycles) // 2],
+            "least_battery_V": figures.least_battery_V if figures.cycles else None,
+            "events": dict(bridge.robot.events),
+            "final": {"x_m": motion.x_m, "y_m": motion.y_m, "heading_rad": motion.heading_rad}}
