@@ -23,7 +23,7 @@ from laconic.scene.base import usual_joints
 
 WORTH_A_LINE = 0.002    # of a radius
 SLIPS, DEVIATIONS = 0.02, 2.0   # of true over rolled motion: what is beyond both it and so many standard errors
-ROUNDING = 1e-5         # path error of a log of the model itself
+ROUNDING = 1e-4         # path error of a log of the model itself, at most
 PARALLEL_RAD = 0.02     # between axles that count as one direction
 
 

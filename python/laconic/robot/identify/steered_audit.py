@@ -23,7 +23,7 @@ from laconic.robot.identify.resolution import floor_of_all
 from laconic.robot.identify.rolling_evidence import path_residual, run_of, stretch_errors, stretch_scores
 from laconic.robot.identify.solve import Fit, fit
 from laconic.robot.identify.study import Study
-from laconic.robot.identify.words import in_words
+from laconic.robot.identify.words import in_words, with_errors
 from laconic.robot.identify.words_of_errors import of_errors
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import remarks_of, run_names
@@ -112,7 +112,7 @@ class SteeredModel:
         after = found.parameters.vehicle(self.scene.vehicle, found.values)
         study = Study(self.scene, list(runs), found, in_words(self.scene, found, runs),
                       self._errors(self.scene.vehicle, runs), self._errors(after, runs), [], [], [])
-        return replace(study, words=[*remarks_of(runs), *study.words, *of_errors(study, ())])
+        return replace(study, words=[*remarks_of(runs), *with_errors(study.words, of_errors(study, ()))])
 
     def _errors(self, vehicle: Vehicle, runs: Sequence[Log]) -> list[RunErrors]:
         return [path_errors(name, log, self.path(vehicle, log))

@@ -345,7 +345,7 @@ def _age(samples: Samples, is_main: bool) -> str:
     if not len(apart):
         return f"{samples.topic}: 1 message"
     by = "stamps" if samples.has_stamps else "instants of arrival"
-    how = "each of them one row" if is_main else f"joined to the rows by their {by}"
+    how = "which make the rows" if is_main else f"joined to the rows by their {by}"
     text = (f"{samples.topic}: {len(age)} messages, {how}, {np.median(apart):.3g} s apart in the median and "
             f"{apart.max():.3g} s at most")
     if samples.has_stamps and np.abs(age).max() > OFTEN:
