@@ -347,6 +347,4 @@ void laconic_daq_event(laconic_node *node) {
     }
 }
 
-#else
-typedef int laconic_node_has_no_daq; /* a file without a declaration is no C */
 #endif

@@ -247,6 +247,4 @@ bool laconic_xcp_next_frame(laconic_node *node, laconic_frame *frame) {
     return true;
 }
 
-#else
-typedef int laconic_node_has_no_xcp; /* a file without a declaration is no C */
 #endif

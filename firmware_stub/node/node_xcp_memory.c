@@ -156,19 +156,16 @@ static void load(const laconic_vehicle *page, uint32_t at, uint8_t *to) {
     }
 }
 
-/* False iff no number of that kind has this value. */
+/* An integer or a flag; kinds of wheels stay. False iff no number of that kind has this value. */
 static bool store_integer(uint8_t *to, uint8_t kind, uint32_t value) {
     const int32_t number = (int32_t)value;
     const bool flag = (value != 0) != (kind == LACONIC_KIND_ABSENCE);
-    const uint32_t largest = kind == LACONIC_KIND_WHEEL_KIND ? 127U : kind == LACONIC_KIND_INTEGER ? UINT32_MAX : 1U;
-    if (value > largest) return false;
-    if (kind == LACONIC_KIND_INTEGER)
+    if (kind == LACONIC_KIND_INTEGER) {
         memcpy(to, &number, sizeof number);
-    else if (kind == LACONIC_KIND_WHEEL_KIND)
-        *(laconic_wheel_kind *)to = (laconic_wheel_kind)value;
-    else
-        memcpy(to, &flag, sizeof flag);
-    return true;
+        return true;
+    }
+    if (value <= 1U) memcpy(to, &flag, sizeof flag);
+    return value <= 1U;
 }
 
 /* A number that is there already keeps the digits that single precision does not show. */
@@ -267,6 +264,12 @@ static bool is_of_vehicle(const laconic_vehicle *page, const laconic_loader_plac
     return place->stride == 0 || k < page->support_count;
 }
 
+/* What laconic_plant_change() does not change: how many wheels and supports there are, kinds of wheels and places. */
+static bool stays(uint32_t field) {
+    return (field >= LACONIC_FIELD_WHEEL_COUNT && field <= LACONIC_FIELD_ROLLER) ||
+           field == LACONIC_FIELD_SUPPORT_COUNT;
+}
+
 static uint8_t may_write(const laconic_node *node, uint32_t address) {
     const uint32_t at = address & 0xFFFFU;
     const laconic_xcp *xcp = &node->xcp;
@@ -276,8 +279,7 @@ static uint8_t may_write(const laconic_node *node, uint32_t address) {
     if (!has_model(node)) return XCP_NOT_NOW;
     if (has_hinges(node) || xcp->master_page == LACONIC_XCP_REFERENCE_PAGE) return XCP_WRITE_PROTECTED;
     if (!find(&place, at) || !is_of_vehicle(&xcp->page[0], &place, at)) return XCP_ACCESS_DENIED;
-    const uint32_t field = at / LACONIC_XCP_EACH;
-    return field == LACONIC_FIELD_WHEEL_COUNT || field == LACONIC_FIELD_SUPPORT_COUNT ? XCP_WRITE_PROTECTED : XCP_DONE;
+    return stays(at / LACONIC_XCP_EACH) ? XCP_WRITE_PROTECTED : XCP_DONE;
 }
 
 /* One byte; a number is stored with its last one. False iff no such number has that value. */
@@ -371,6 +373,4 @@ uint8_t laconic_xcp_copy_page(laconic_node *node, const uint8_t *command) {
     return error;
 }
 
-#else
-typedef int laconic_node_has_no_xcp_memory; /* a file without a declaration is no C */
 #endif

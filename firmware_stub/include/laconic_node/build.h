@@ -24,13 +24,14 @@
 #else
 #define LACONIC_NODE_BUILT_DRIVES_ONLY laconic_node_built_with_LACONIC_NODE_DRIVES_ONLY_0
 #endif
-#if LACONIC_NODE_WITH_XCP /* one name, since a node without it has no call more */
-#define LACONIC_NODE_BUILT_SENSORS \
-    LACONIC_JOINED(laconic_node_built_with_LACONIC_NODE_WITH_XCP_1_and_SENSORS_, LACONIC_NODE_WITH_SENSORS)
+#if LACONIC_NODE_WITH_SENSORS && LACONIC_NODE_WITH_XCP /* one name, since a node without both has no call more */
+#define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_1_and_LACONIC_NODE_WITH_XCP_1
 #elif LACONIC_NODE_WITH_SENSORS
-#define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_1
+#define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_1_and_LACONIC_NODE_WITH_XCP_0
+#elif LACONIC_NODE_WITH_XCP
+#define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_0_and_LACONIC_NODE_WITH_XCP_1
 #else
-#define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_0
+#define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_0_and_LACONIC_NODE_WITH_XCP_0
 #endif
 #if LACONIC_NODE_WITH_HINGES && LACONIC_NODE_WITH_ESTIMATE /* one name, since a node without both has no call more */
 #define LACONIC_NODE_BUILT_ESTIMATE \

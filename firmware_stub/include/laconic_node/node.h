@@ -121,31 +121,17 @@ typedef struct laconic_node_hinges {
  * next step, as soon as its last byte has come: laconic_plant_change() prepares the whole vehicle anew and may refuse.
  * The master then gets an error and the node keeps its numbers; a RESULT to CALIBRATE names status, field and item.
  * While the node runs on the reference, the working page may be inconsistent: SET_CAL_PAGE checks it. Writing a number
- * that is already there changes no bit of it. Vehicles with hinges can be read, but not calibrated.
+ * that is already there changes no bit of it. Counts, and kinds and places of wheels, can be read, but not written;
+ * the same holds for all numbers of vehicles with hinges.
  *
  * Measurement: dynamic lists; event 0 is each step, 1 and 2 are the first steps at or behind each 10 and 100 ms. Stamps
  * are step count · step in microseconds: integers, the same in lockstep and free run. In lockstep steps wait for room
  * in the queue, so no sample is lost. Free run and drives do not wait: a sample without room is dropped as a whole and
  * the master gets the event DAQ_OVERLOAD. */
-#ifndef LACONIC_XCP_LISTS
 #define LACONIC_XCP_LISTS 8
-#endif
-#ifndef LACONIC_XCP_ODTS
-#define LACONIC_XCP_ODTS 48 /* of all lists: frames of one instant */
-#endif
-#ifndef LACONIC_XCP_ENTRIES
-#define LACONIC_XCP_ENTRIES 96
-#endif
-#ifndef LACONIC_XCP_QUEUE
-#define LACONIC_XCP_QUEUE 64 /* frames */
-#endif
-#if LACONIC_XCP_LISTS < 1 || LACONIC_XCP_LISTS > 255 || LACONIC_XCP_ODTS > 252 || LACONIC_XCP_ENTRIES > 255
-#error "laconic: XCP numbers 1 to 255 lists, up to 252 ODTs and 255 entries"
-#endif
-#if LACONIC_XCP_QUEUE < LACONIC_XCP_ODTS || LACONIC_XCP_QUEUE > 255
-#error "laconic: LACONIC_XCP_QUEUE must have room for all ODTs of an instant, and at most 255 frames"
-#endif
-
+#define LACONIC_XCP_ODTS 48    /* of all lists: frames of one instant                 */
+#define LACONIC_XCP_ENTRIES 96 /* of all lists                                        */
+#define LACONIC_XCP_QUEUE 64   /* frames; room for those of an instant, at most 255   */
 #define LACONIC_XCP_PARAMETERS 0x10000U
 #define LACONIC_XCP_OUTPUTS 0x20000U
 #define LACONIC_XCP_TEXTS 0x30000U

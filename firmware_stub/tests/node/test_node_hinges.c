@@ -80,6 +80,15 @@ static void what_a_vehicle_with_hinges_does_not_have_is_refused(void) {
     }
 }
 
+static void ground_on_which_wheels_of_hinges_slip_is_refused_by_its_field(void) {
+    const parameter friction = NUMBER(GROUND_FRICTION_COEFFICIENT, 0, 0.8);
+    begin_tricycle(&prescribed);
+    TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&friction));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FRICTION_WITH_HINGES, commit());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_FIELD_GROUND_FRICTION_COEFFICIENT, data[4]);
+    TEST_ASSERT_FALSE(node.hinges.here);
+}
+
 static void a_refused_vehicle_leaves_the_one_before(void) {
     const parameter unknown = INTEGER(BODY_HINGE, 1, 9), parent = INTEGER(BODY_PARENT, 1, 1);
     load_tricycle(&prescribed);
@@ -325,6 +334,7 @@ int main(void) {
     RUN_TEST(a_body_without_a_required_number_is_refused_by_field_and_item);
     RUN_TEST(a_kind_of_hinge_beyond_one_byte_is_refused_and_not_cut);
     RUN_TEST(what_a_vehicle_with_hinges_does_not_have_is_refused);
+    RUN_TEST(ground_on_which_wheels_of_hinges_slip_is_refused_by_its_field);
     RUN_TEST(a_refused_vehicle_leaves_the_one_before);
     RUN_TEST(voltages_and_rates_make_the_step_of_the_core);
     RUN_TEST(a_command_is_reached_once_and_then_held);

@@ -89,11 +89,11 @@ static void a_refused_number_is_named_and_changes_nothing(void) {
     TEST_ASSERT_TRUE(answer[2] == LACONIC_NOT_POSITIVE && answer[3] == LACONIC_FIELD_MASS && answer_length == 5);
     TEST_ASSERT_EQUAL_MEMORY(&before, &node.plant, sizeof before);
     TEST_ASSERT_EQUAL_FLOAT(1, real_at(PARAMETER(LACONIC_FIELD_MASS, 0)));
-    tell((const uint8_t[]){0xF6, 0, 0, 0, BYTES(PARAMETER(LACONIC_FIELD_WHEEL_X, 1))}, 8);
+    tell((const uint8_t[]){0xF6, 0, 0, 0, BYTES(PARAMETER(LACONIC_FIELD_OWN_RADIUS, 1))}, 8);
     tell((const uint8_t[]){0xF0, 4, 0, 0, 0xC0, 0x7F}, 6); /* NaN */
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_CALIBRATE, data[2]);
-    TEST_ASSERT_TRUE(data[3] == LACONIC_NOT_FINITE && data[4] == LACONIC_FIELD_WHEEL_X && data[5] == 2);
+    TEST_ASSERT_TRUE(data[3] == LACONIC_NOT_FINITE && data[4] == LACONIC_FIELD_OWN_RADIUS && data[5] == 2);
 }
 
 static void a_number_that_is_there_keeps_its_hidden_digits(void) {
@@ -136,11 +136,12 @@ static void an_impossible_page_is_refused_by_name_and_the_node_stays_on_its_own(
 }
 
 static void a_number_in_parts_acts_when_its_last_byte_has_come(void) {
-    DONE_BY(0xF6, 0, 0, 0, BYTES(PARAMETER(LACONIC_FIELD_WHEEL_X, 0)));
+    DONE_BY(0xF6, 0, 0, 0, BYTES(PARAMETER(LACONIC_FIELD_OWN_INERTIA, 0)));
     DONE_BY(0xF0, 6, 0, 0, 0x80, 0x40, 0, 0); /* 4, and half of the next */
-    TEST_ASSERT_TRUE(node.plant.vehicle.wheel[0].x_m == 4 && node.plant.vehicle.wheel[1].x_m == 2);
+    TEST_ASSERT_TRUE(node.plant.vehicle.wheel[0].own_inertia_kgm2 == 4 &&
+                     node.plant.vehicle.wheel[1].own_inertia_kgm2 == 0);
     DONE_BY(0xF0, 2, 0xA0, 0x40);
-    TEST_ASSERT_TRUE(node.plant.vehicle.wheel[1].x_m == 5);
+    TEST_ASSERT_TRUE(node.plant.vehicle.wheel[1].own_inertia_kgm2 == 5);
 }
 
 static void integers_flags_and_kinds_are_numbers_of_the_page(void) {
@@ -153,12 +154,10 @@ static void integers_flags_and_kinds_are_numbers_of_the_page(void) {
     TEST_ASSERT_EQUAL_HEX8(XCP_OUT_OF_RANGE, write_word(PARAMETER(LACONIC_FIELD_DRIVEN, 1), 2));
     TEST_ASSERT_TRUE(answer[2] == LACONIC_WIRE_STATUS_OUT_OF_RANGE && answer[3] == LACONIC_FIELD_DRIVEN &&
                      answer[4] == 2);
-    TEST_ASSERT_EQUAL_HEX8(DONE, write_word(PARAMETER(LACONIC_FIELD_WHEEL_KIND, 0), LACONIC_WHEEL_FIXED));
     DONE_BY(0xEB, 1, 0, 1);
-    TEST_ASSERT_EQUAL_HEX8(DONE, write_word(PARAMETER(LACONIC_FIELD_WHEEL_KIND, 0), LACONIC_WHEEL_ROLLER));
-    TEST_ASSERT_EQUAL_HEX8(DONE, write_word(PARAMETER(LACONIC_FIELD_MOTOR_CIRCUIT, 0), 2));
-    TEST_ASSERT_TRUE(node.xcp.page[0].wheel[0].kind == LACONIC_WHEEL_ROLLER &&
-                     node.xcp.page[0].wheel[0].motor_circuit == 2);
+    TEST_ASSERT_EQUAL_HEX8(DONE, write_word(PARAMETER(LACONIC_FIELD_MOTOR_CIRCUIT, 0), 3));
+    REFUSED(XCP_PAGE_NOT_VALID, 0xEB, 1, 0, 0);
+    TEST_ASSERT_TRUE(answer[2] == LACONIC_MOTOR_CIRCUIT_UNKNOWN && answer[3] == LACONIC_FIELD_MOTOR_CIRCUIT);
 }
 
 /* A segment is read and summed as a whole: where there is no number, 0. */
@@ -213,7 +212,8 @@ static void wrong_requests_have_their_codes(void) {
         {"F4 4 0 0 80 15 2 0", XCP_ACCESS_DENIED}, {"F6 0 0 0 80 C 2 0", DONE},
         {"F0 4 0 0 80 3F", XCP_WRITE_PROTECTED}, {"F6 0 0 0 0 0 3 0", DONE}, {"F0 1 0", XCP_WRITE_PROTECTED},
         {"F6 0 0 0 80 7 1 0", DONE}, {"F0 4 1 0 0 0", XCP_WRITE_PROTECTED}, {"F6 0 0 0 0 B 1 0", DONE},
-        {"F0 4 1 0 0 0", XCP_WRITE_PROTECTED}, {"F6 0 0 0 0 0 4 0", DONE}, {"F0 1 0", XCP_ACCESS_DENIED},
+        {"F0 4 1 0 0 0", XCP_WRITE_PROTECTED}, {"F6 0 0 0 84 8 1 0", DONE}, {"F0 4 0 0 80 3F", XCP_WRITE_PROTECTED},
+        {"F6 0 0 0 0 0 4 0", DONE}, {"F0 1 0", XCP_ACCESS_DENIED},
         {"F6 0 0 0 0 20 1 0", DONE}, {"F0 1 0", XCP_ACCESS_DENIED}, {"F6 0 0 0 88 8 1 0", DONE},
         {"F0 1 0", XCP_ACCESS_DENIED}, {"F6 0 0 0 80 B 1 0", DONE}, {"F0 1 0", XCP_ACCESS_DENIED},
         {"F6 0 0 0 0 F 1 0", DONE}, {"F0 1 0", XCP_ACCESS_DENIED}, {"F6 0 0 0 84 0 1 0", DONE},

@@ -38,7 +38,19 @@ static void load(laconic_node *node) {
     parameters->step_s = (laconic_real)0.001;
     must(laconic_plant_start(&node->plant, &vehicle, &laconic_rk4, parameters->step_s, &parameters->start, NULL) ==
          LACONIC_OK);
+    node->xcp.page[LACONIC_XCP_WORKING_PAGE] = node->plant.vehicle;
+    node->xcp.page[LACONIC_XCP_REFERENCE_PAGE] = node->plant.vehicle;
     node->state = LACONIC_WIRE_STATE_READY;
+}
+
+/* An XCP master connects, so that its commands need not find that. */
+static void connect(laconic_node *node) {
+    const laconic_frame frame = {
+        .id = (uint32_t)node->config.id_base + LACONIC_WIRE_XCP_COMMAND, .length = 2, .data = {0xFF}};
+    laconic_frame answer;
+    laconic_node_on_frame(node, &frame, 0);
+    while (laconic_node_next_frame(node, &answer)) continue; /* with those of the handshake */
+    must(node->xcp.connected);
 }
 
 static void fill(laconic_frame *frame, const uint8_t *record, uint16_t id_base) {
@@ -83,8 +95,10 @@ static void open_session(bench *bench) {
     must(bench->node.session.open);
 }
 
-/* Properties that docs/wire.md states for every state. */
+/* Properties that docs/wire.md states for every state, and that the node runs on the page that XCP shows. */
 static void check(const laconic_node *node) {
+    const laconic_vehicle *page = &node->xcp.page[node->xcp.node_page];
+    must(node->hinges.here || memcmp(page, &node->plant.vehicle, sizeof *page) == 0);
     const bool moves = node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
     must(node->state <= LACONIC_WIRE_STATE_FAULT);
     for (int k = 0; !moves && k < LACONIC_MAX_WHEELS; k++) must(node->input[0].voltage_V[k] == 0);
@@ -107,6 +121,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         laconic_node_init(&ready.node, &config, 0);
         open_session(&ready);
         load(&ready.node);
+        connect(&ready.node);
     }
     memcpy(&bench, &ready, sizeof bench);
     for (; size >= RECORD; data += RECORD, size -= RECORD) {

@@ -11,7 +11,7 @@ import pytest
 
 import laconic
 from laconic.errors import BadInput
-from laconic.ros2.base import Base, Odometry
+from laconic.ros2.base import Base
 from laconic.ros2.motion import Lanes, Singles
 from laconic.scene import build_scene, read_scene
 from laconic.scene.base import BaseTable
@@ -182,7 +182,7 @@ def test_a_refused_step_leaves_the_others_running() -> None:
 
 def test_an_arc_is_integrated_exactly() -> None:
     base = Base(read_scene("turtlebot3_burger"))
-    odometry = Odometry(base.beliefs)
+    odometry = base._new_odometry()
     rates = base.beliefs.rows @ np.array([0.3, 0.0, 0.7])
     for second in range(4):  # coarse looks at a motion of constant velocity
         odometry.see(rates * second, 1.0 if second else 0.0)

@@ -338,6 +338,43 @@ def test_tokens_of_others_tell_of_namesakes_and_wrong_types() -> None:
 
 
 @with_zenoh
+def test_a_token_of_our_type_with_other_fields_is_told() -> None:
+    with peers() as (session, peer, lines):
+        token = peer.token(peer.node("peer"), zenoh.PUBLISHER, "/cmd_vel", TWIST)
+        other = token.replace(type_hash(TWIST), "RIHS01_" + 64 * "0")
+        peer.kept(peer.session.liveliness().declare_token(other))
+        until(session, lambda: bool(lines))
+        assert lines == ["/laconic: a publisher on cmd_vel sends geometry_msgs/msg/Twist with other fields than ROS "
+                         "has, which is not heard; build it of the definition of ROS"]
+
+
+@with_zenoh
+def test_a_router_that_comes_late_and_goes_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh, "LINK_S", 0.0)
+    where = f"tcp/127.0.0.1:{free_ports(1)[0]}"
+    context, lines = zenoh.Context(ZENOH_DOMAIN, is_local=True, router=where), list[str]()
+
+    def more_lines(count: int) -> None:
+        end = time.monotonic() + LONGEST_S
+        while len(lines) < count and time.monotonic() < end:
+            lines.extend(context.remarks())
+
+    try:
+        lines += [*context.remarks(), *context.remarks()]
+        router = zenoh.Context(ZENOH_DOMAIN, is_local=True, router="tcp/127.0.0.1:1", listen=where)
+        try:
+            more_lines(2)
+        finally:
+            router.close()
+        more_lines(3)
+        assert lines == [f"no Zenoh router at {where} yet; will connect when it comes",
+                         f"connected to Zenoh at {where}",
+                         f"the Zenoh router at {where} is gone; will connect when it comes again"]
+    finally:
+        context.close()
+
+
+@with_zenoh
 def test_bytes_of_another_type_are_told_and_move_nothing() -> None:
     with peers(is_stamped=False) as (session, peer, lines):
         publisher = peer.session.declare_publisher(peer.key("cmd_vel", TWIST, type_hash(TWIST)))

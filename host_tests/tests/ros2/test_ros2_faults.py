@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +14,19 @@ import pytest
 from cyclonedds._clayer import ddspy_write
 from cyclonedds.builtin import BuiltinTopicDcpsPublication
 from cyclonedds.core import DDSException
+from cyclonedds.idl import IdlStruct
+from cyclonedds.idl.annotations import final
+from cyclonedds.idl.types import float64
 from cyclonedds.pub import DataWriter
-from cyclonedds.qos import Policy
+from cyclonedds.qos import Policy, Qos
+from cyclonedds.topic import Topic
 
 import laconic
 from laconic.errors import BadInput
+from laconic.ros2 import wire
+from laconic.ros2.lines import LibraryLines, library_lines
 from laconic.ros2.maps import Map
-from laconic.ros2.messages import new, type_hash
+from laconic.ros2.messages import message_class, new, plain_class, type_hash
 from laconic.ros2.names import LATCHED, USUAL, polled
 from laconic.ros2.wire import Participant
 from laconic.scene import read_scene
@@ -27,6 +34,7 @@ from ros2_support import DOMAIN, announced, last, rig_of
 
 TWIST = "geometry_msgs/msg/Twist"
 ODOMETRY, TF = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
+QUIET_DOMAIN = 73  # where no other writers come and go
 
 
 def yaw_of(rotation: Any) -> float:
@@ -62,6 +70,103 @@ def test_a_command_that_is_not_finite_is_ignored_and_told(number: float) -> None
         assert [line.partition(": ")[2][:47] for line in rig.lines] == [
             "a command on cmd_vel has a number that is infin", "cmd_vel was silent for 0.5 s, so the robot stop"]
         assert rig.session.told.counts["/laconic: not finite"] == 60
+
+
+def test_commanders_on_two_topics_are_told_with_both() -> None:
+    with rig_of("f1tenth") as rig:
+        kind = "ackermann_msgs/msg/AckermannDriveStamped"
+        one, other = rig.node.publisher("cmd_vel", TWIST), rig.node.publisher("drive", kind)
+
+        def both() -> None:
+            one.write(rig.twist(0.05))
+            other.write(new(kind))
+
+        rig.turn(10, both)
+        assert rig.lines == ["/laconic: two publishers command the robot, on cmd_vel and drive, at once; the last "
+                             "command counts, so stop one of them"]
+
+
+def test_a_publisher_whose_type_has_other_fields_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    @final
+    @dataclass
+    class Twist(IdlStruct, typename="geometry_msgs.msg.dds_.Twist_"):
+        speed: float64
+
+    monkeypatch.setattr(wire, "MATCH_S", 0.0)
+    with rig_of(domain=QUIET_DOMAIN) as rig:
+        writer = DataWriter(rig.peer.publisher, Topic(rig.peer.dds, "rt/cmd_vel", Twist), qos=rig.peer._qos(
+            DataWriter, TWIST, USUAL, ""))
+        rig.turn(60, lambda: writer.write(Twist(1.0)))
+        assert rig.lines == ["/laconic: a publisher on cmd_vel sends geometry_msgs/msg/Twist with other fields than "
+                             "ROS has, which is not heard; build it of the definition of ROS"]
+        assert rig.session.base.look()[0].x_m == 0.0
+        assert sum(rig.session.told.counts.values()) == 1
+
+
+def test_a_publisher_that_came_and_went_is_no_event(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wire, "MATCH_S", 0.0)
+    with rig_of(domain=QUIET_DOMAIN) as rig:
+        rig.turn()
+        rig.node.publisher("cmd_vel", TWIST).__del__()
+        rig.turn(60)
+        assert rig.lines == []
+
+
+def test_a_publisher_that_offers_best_effort_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wire, "MATCH_S", 0.0)
+    with rig_of(domain=QUIET_DOMAIN) as rig:
+        rig.drive(30, 0.0)  # one that matches is no event
+        qos = Qos(Policy.Reliability.BestEffort, Policy.DataRepresentation(use_cdrv0_representation=True))
+        writer = DataWriter(rig.peer.publisher, rig.peer._topics["rt/cmd_vel", TWIST], qos=qos)
+        rig.turn(60)
+        assert not writer.get_matched_subscriptions()
+        assert rig.lines == ["/laconic: a publisher on cmd_vel offers best effort, which is not heard; make it "
+                             "reliable"]
+
+
+def test_bytes_behind_a_message_make_it_another_type_and_padding_does_not() -> None:
+    data = new(TWIST).serialize(use_version_2=False)
+    for cls in (message_class(TWIST), plain_class(TWIST)):
+        assert cls.deserialize(data + bytes(3)).linear.x == 0.0
+        with pytest.raises(ValueError, match="bytes are left over"):
+            cls.deserialize(data + bytes(8))
+
+
+def test_longer_bytes_on_cmd_vel_move_nothing_and_are_counted() -> None:
+    with rig_of() as rig:
+        writer = rig.node.publisher("cmd_vel", TWIST)
+        data = rig.twist(0.2).serialize(use_version_2=False) + bytes(40)
+        rig.turn(30, lambda: ddspy_write(writer._ref, bytes(data)))
+        assert rig.lines == ["/laconic: a message on cmd_vel cannot be read as its type and is ignored"]
+        assert rig.session.told.counts == {"/laconic: unreadable": 30}
+        assert rig.session.base.look()[0].x_m == 0.0
+
+
+def test_lines_of_the_library_are_limited_and_counted(tmp_path: Path) -> None:
+    path = tmp_path / "lines"
+    path.touch()
+    with rig_of() as rig:
+        rig.session.library = LibraryLines(path)
+        for cycle in range(60):
+            with path.open("a") as file:
+                file.write(f"17959285{cycle}.54 [77]       recv: data(application, vendor 1.16): 110d93c:b66a #{cycle}"
+                           ": deserialization rt/cmd_vel/geometry_msgs::msg::dds_::Twist_ failed (unknown)\n"
+                           f"17959285{cycle}.55 [77]       recv: no room for {cycle}\n")
+            rig.turn()
+        assert rig.lines == ["/laconic: a message on cmd_vel cannot be read as its type and is ignored",
+                             "the library of the wire: no room for 0"]
+        assert sorted(rig.session.told.counts) == ["/laconic: unreadable", "no room for …"]
+        assert min(rig.session.told.counts.values()) > 50
+
+
+def test_what_libraries_print_is_taken_until_the_command_ends(capfd: pytest.CaptureFixture[str]) -> None:
+    said: list[str] = []
+    with library_lines(said.append) as library:
+        os.write(2, b"17.5 [3]  recv: one\n")
+        assert library is not None and library.take() == ["one"] and library.take() == []
+        os.write(2, b"two 1\ntwo 2\n")
+    os.write(2, b"three\n")
+    assert said == ["two …"] and capfd.readouterr().err == "three\n"
 
 
 def test_two_commanders_are_told_and_the_last_counts() -> None:
@@ -253,6 +358,20 @@ def test_the_scan_shows_the_walls_of_the_map(tmp_path: Path) -> None:
               for number, distance in enumerate(scan.ranges)}
         for degrees, distance in ((0, 0.95), (90, 2.45), (-90, 1.45), (-180, 0.95)):
             assert at[degrees] == pytest.approx(distance, abs=0.06)
+
+
+@pytest.mark.parametrize("frame, lines", [
+    ("map", []), ("/map", []), ("", ["/laconic: initialpose names no frame, and is taken as one in map"]),
+    ("odom", ["/laconic: initialpose is in the frame odom and is ignored; give it in map, or name that frame with "
+              "--frame map="])])
+def test_an_initial_pose_is_one_in_the_map(frame: str, lines: list[str]) -> None:
+    with rig_of(is_loopback=True) as rig:
+        pose = new("geometry_msgs/msg/PoseWithCovarianceStamped")
+        pose.header.frame_id, pose.pose.pose.position.x, pose.pose.pose.orientation.w = frame, 2.0, 1.0
+        rig.node.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped").write(pose)
+        rig.turn(2)
+        assert [line for line in rig.lines if " puts the robot at " not in line] == lines
+        assert rig.session.base.look()[0].x_m == (0.0 if frame == "odom" else 2.0)
 
 
 @pytest.mark.parametrize("place, yaw", [(math.nan, 1.0), (1e300, 1.0), (0.0, 1e300), (0.0, math.inf), (0.0, 0.0)])

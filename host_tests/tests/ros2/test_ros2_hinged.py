@@ -233,7 +233,7 @@ def test_a_car_steers_while_it_stands() -> None:
         drive_by_angle(rig, 30, "drive", steering_angle=0.3)
         seen = rig.session.base.look()[0]
         assert math.tan(min(seen.hinge_rad)) < math.tan(0.3) < math.tan(max(seen.hinge_rad))
-        assert (seen.x_m, seen.y_m) == pytest.approx((CAR_START_M, 0.0), abs=1e-9)
+        assert (seen.x_m, seen.y_m) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 @pytest.mark.parametrize("name", CARS)
@@ -261,8 +261,40 @@ def test_limits_of_an_ackermann_command_are_kept_and_told() -> None:
 def test_an_ackermann_command_that_cannot_be_is_ignored(value: float) -> None:
     with rig_of("f1tenth") as rig:
         drive_by_angle(rig, 10, speed=1.0, steering_angle=value)
-        assert rig.session.base.look()[0].x_m == CAR_START_M
+        assert rig.session.base.look()[0].x_m == 0.0
         assert len(rig.lines) == 1 and "or an angle of a right angle or more, and is ignored" in rig.lines[0]
+
+
+@pytest.mark.parametrize("field", ["acceleration", "steering_angle_velocity", "jerk"])
+def test_a_limit_below_0_is_refused_by_name(field: str) -> None:
+    with rig_of("f1tenth") as rig:
+        drive_by_angle(rig, 10, speed=1.0, **{field: -1.0})
+        assert rig.session.base.look()[0].x_m == 0.0
+        assert rig.lines == [f"/laconic: a command on ackermann_cmd has {field} = -1, and is ignored; give limits "
+                             "above 0, for both ways, or 0 for those of the scene"]
+
+
+@pytest.mark.parametrize("name", ["f1tenth", "canopen_agv"])
+def test_odometry_and_truth_begin_at_one_pose_of_the_base(name: str) -> None:
+    with rig_of(name) as rig:
+        odoms, truths = (rig.node.subscription(topic, "nav_msgs/msg/Odometry")
+                         for topic in ("odom", "ground_truth/odom"))
+        rig.turn()
+        places = [(each.pose.pose.position.x, each.pose.pose.position.y) for each in (last(odoms), last(truths))]
+        assert places == [(0.0, 0.0), (0.0, 0.0)]
+        rig.drive(60, 0.5, 0.2)
+        here, truth = last(odoms).pose.pose.position, last(truths).pose.pose.position
+        assert (here.x, here.y) == pytest.approx((truth.x, truth.y), abs=2e-3) and truth.x > 0.3
+        rig.call("/laconic/reset", "std_srvs/srv/Empty")
+        assert rig.session.base.look()[0].x_m == 0.0
+
+
+def test_a_trailer_that_folds_is_told_once() -> None:
+    with rig_of("tugger_train") as rig:
+        rig.drive(700, -1.0, 0.1)
+        told = [line for line in rig.lines if " folds" in line]
+        assert told and len(told) == len({*told}) and told[0].startswith("/laconic: ")
+        assert "its hinge angle is beyond 90°; a real one would hit what draws it" in told[0]
 
 
 def test_ackermann_commands_of_what_is_no_car_are_told() -> None:

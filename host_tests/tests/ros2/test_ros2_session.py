@@ -297,6 +297,9 @@ def test_a_rate_that_does_not_fit_is_refused(rate: float, message: str) -> None:
     ({"robots": 0}, "--robots: 0"), ({"speed": 2.0}, "--speed: 2 needs stamps of simulated time; add --sim-time"),
     ({"duration_s": -1.0}, "--duration: -1"), ({"map_file": Path("m.yaml")}, "--map: has a meaning with --loopback"),
     ({"frames": ("wheel=x",)}, "--frame: wheel=x is not NAME=FRAME"), ({"domain": 300}, "--domain: 300 is not"),
+    ({"frames": ("base=odom",)}, "--frame: base and odom are both called odom; give each frame a name of its own"),
+    ({"speed": 1e6, "is_sim_time": True}, "--speed: 1e+06 is more than any machine can; give at most 1000"),
+    ({"urdf": Path(__file__)}, "test_ros2_session.py: is no URDF, which is XML"),
     ({"robots": 2, "record": Path("r.toml")}, "--record: keeps the run of one robot")])
 def test_options_that_cannot_be_are_one_line(options: dict[str, Any], message: str) -> None:
     with pytest.raises(BadInput, match=re.escape(message)), rig_of(**options):
@@ -365,6 +368,43 @@ def test_a_run_ends_after_its_duration_with_figures(capsys: pytest.CaptureFixtur
     assert "hears Twist or TwistStamped on /cmd_vel" in printed.err
 
 
+@pytest.mark.parametrize("words, message", [
+    (["--router", "tcp/host:1"], "--router: has a meaning with --rmw zenoh alone; leave it out, or add --rmw zenoh"),
+    (["--stamped", "--unstamped"], "--stamped --unstamped: exclude each other; give one of them")])
+def test_options_that_do_not_go_together_are_one_line(words: list[str], message: str, monkeypatch: pytest.MonkeyPatch,
+                                                      capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.delenv("RMW_IMPLEMENTATION", raising=False)
+    assert run(["ros2", "robotino2", *LOCAL, "--duration", "0.1", *words]) == 2
+    assert capsys.readouterr().err == f"laconic: {message}\n"
+
+
+def test_an_xml_file_that_describes_no_robot_is_refused(tmp_path: Path) -> None:
+    for text in ("<sdf><model/></sdf>", "<robot name='r'/>"):
+        path = tmp_path / "other.urdf"
+        path.write_text(text)
+        with pytest.raises(BadInput, match=r"other.urdf: is no URDF; give the file with <robot>"), rig_of(urdf=path):
+            pass
+
+
+def test_the_last_poses_of_several_robots_have_names(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", "robotino2", *LOCAL, "--duration", "0.04", "--robots", "7"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(" at x")[0] for line in lines if " at x = " in line] == [
+        f"/robot{number}/laconic" for number in range(1, 6)]
+    assert lines[-1] == "and 2 more robots; --json lists all of them"
+
+
+def test_a_speed_that_cannot_be_reached_is_told_once_and_the_reached_one_at_the_end(
+        capsys: pytest.CaptureFixture[str]) -> None:
+    with rig_of(is_sim_time=True, speed=1000.0, duration_s=1.0) as rig:
+        rig.time.overslept_s = 30.0
+        rig.session.run()
+        assert rig.lines == ["--speed 1000 is more than this machine can, so the robot runs as fast as it can; the "
+                             "figures at the end state how fast"]
+    assert run(["ros2", "robotino2", *LOCAL, "--duration", "0.2", "--sim-time", "--speed", "1000"]) == 0
+    assert " times as fast as the clock, " in capsys.readouterr().out
+
+
 def test_a_car_says_what_drives_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["ros2", "f1tenth", *LOCAL, "--duration", "0.1"]) == 0
     assert "hears Twist or TwistStamped on /cmd_vel and AckermannDriveStamped on ackermann_cmd and drive" in \
@@ -422,9 +462,13 @@ def test_its_help_needs_no_package() -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
-def test_a_signal_ends_the_run_in_order(number: int) -> None:
+def test_a_signal_ends_the_run_in_order_also_in_the_background(number: int) -> None:
     words = [sys.executable, "-m", "laconic", "ros2", "robotino2", *LOCAL, "--json"]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    before = signal.signal(number, signal.SIG_IGN)  # as a shell without job control starts a job with &
+    try:
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    finally:
+        signal.signal(number, before)
     try:
         assert process.stderr is not None
         assert "Festo Robotino 2" in process.stderr.readline()  # it runs

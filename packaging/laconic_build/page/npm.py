@@ -14,12 +14,13 @@ from pathlib import Path
 from typing import Any
 
 from laconic.core.articulated import method_names
-from laconic.scene.keys import HINGE_KEYS, NOT_NEGATIVE, NOT_ZERO, POSITIVE, Key
+from laconic.scene.keys import HINGE_KEYS, KEYS, NOT_NEGATIVE, NOT_ZERO, POSITIVE, Key
 from laconic.scene.methods import METHODS
 from laconic.scene.table import REQUIRED
 
 NPM_TIME = 499162500  # 1985-10-26, which npm, too, gives every file, so that archives do not differ by their times
 
+OF_ROBOTS = ("vehicle", "ground", "initial", "input", "run", "outputs", "sensors")
 
 RULES = {POSITIVE: "POSITIVE", NOT_NEGATIVE: "NOT_NEGATIVE", NOT_ZERO: "NOT_ZERO"}
 """The rules of keys by the names that hinge_tables.js has for them."""
@@ -37,6 +38,7 @@ def make_package(sources: Path, wasm: Path, hinged_wasm: Path, version: str, out
     (out / "src/wasm.js").write_text(module_of("The core", wasm), encoding="ascii")
     (out / "src/hinged_wasm.js").write_text(module_of("The core's part for hinges", hinged_wasm), encoding="ascii")
     (out / "src/hinge_keys.js").write_text(keys_of_hinges(), encoding="utf-8")
+    (out / "src/tool_tables.js").write_text(tables_of_tools(), encoding="ascii")
     (out / "package.json").write_text(json.dumps(manifest_of(sources, version), indent=2) + "\n", encoding="utf-8")
     shutil.copyfile(sources / "README.md", out / "README.md")
     shutil.copyfile(sources.parents[1] / "LICENSE", out / "LICENSE")
@@ -66,6 +68,14 @@ def keys_of_hinges() -> str:
     text = json.dumps(tables, separators=(",", ":")).replace('"},"', '"},\n"')
     return ("// Made of the command's list of keys (python/laconic/scene/keys.py).\n"
             f"/** @type {{Record<string, Record<string, any>>}} */\nexport const HINGE_KEYS = {text};\n")
+
+
+def tables_of_tools() -> str:
+    """The tables of a scene that other tools read: all but those of a robot and its run."""
+    tables = dict.fromkeys(path.partition(".")[0].removesuffix("[#]") for path in KEYS if "." in path)
+    names = [name for name in tables if name not in OF_ROBOTS]
+    return ("// Made of the command's list of keys (python/laconic/scene/keys.py).\n"
+            f"export const OF_TOOLS = {json.dumps(names)};\n")
 
 
 def traits_of(key: Key) -> dict[str, Any]:

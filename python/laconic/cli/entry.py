@@ -19,8 +19,7 @@ def leave(number: int, frame: FrameType | None) -> None:
 
 def main() -> None:
     """The command `laconic`."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # a shell's background job ignores it
-        signal.signal(signal.SIGINT, leave)
+    signal.signal(signal.SIGINT, leave)  # also in a shell's background job, which begins with the signal ignored
     from laconic.cli.main import main as run_command
 
     run_command()

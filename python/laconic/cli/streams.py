@@ -67,12 +67,18 @@ def guard() -> None:
     encoding = getattr(sys.stdout, "encoding", "utf-8")
     raw = Stdout(1, "w", closefd=False)
     sys.stdout = io.TextIOWrapper(io.BufferedWriter(raw), encoding, "backslashreplace", line_buffering=raw.isatty())
-    for name in ENDING_SIGNALS:
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP
-            signal.signal(number, stop)
+    hear_signals()
     atexit.register(answer_signals, stop_at_once, signal.SIG_IGN)  # nothing is left that could take long
     sys.unraisablehook = stop_again
+
+
+def hear_signals() -> None:
+    """Lets signals end the command in order. A shell without job control starts background jobs with SIGINT ignored,
+    and Python would leave it so: `kill -INT` and launch files could not end them. nohup's SIGHUP stays ignored."""
+    for name in ENDING_SIGNALS:
+        number = getattr(signal, name, None)
+        if number is not None and (name != "SIGHUP" or signal.getsignal(number) is not signal.SIG_IGN):
+            signal.signal(number, stop)
 
 
 def let_signals_end() -> None:

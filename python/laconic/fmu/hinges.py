@@ -12,6 +12,7 @@ from laconic.core.slipping import hinge_keys, wheel_keys
 from laconic.errors import BadInput
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, CURVATURE, TWIST
+from laconic.scene.hinges import Hinge
 from laconic.simulation.articulated import start_plant
 from laconic.simulation.slipping import SlippingCommands, start_slipping
 from laconic.simulation.steering import Commands
@@ -116,9 +117,15 @@ def check(scene: Scene, **options: bool) -> None:
         raise BadInput(f"{scene.path}: sensors: the FMU of a vehicle with hinges has no sensors yet; take them out")
 
 
+def _stops_itself(scene: Scene, hinge: Hinge) -> bool:
+    """Whether the stops of a hinge are parameters of the FMU."""
+    return scene.slips_on_hinges and (bool(hinge.follows) or not hinge.is_commanded)
+
+
 def left_out(scene: Scene) -> str:
     """One line for what the scene has and its FMU does not; "" for none."""
-    limited = [hinge.name for hinge in scene.hinges if hinge.has_stops or math.isfinite(hinge.rate_limit_rad_per_s)]
+    limited = [hinge.name for hinge in scene.hinges if math.isfinite(hinge.rate_limit_rad_per_s) or
+               (hinge.has_stops and not _stops_itself(scene, hinge))]
     found = []
     if limited:
         found.append(f"the FMU has no limits of angle and rate: those of {', '.join(limited)} are left out; keep to "

@@ -249,19 +249,22 @@ class Pigeon:
 
 
 def port_of(part: str, given: Any, counts: float, gearing: float | None) -> Any:
-    """The device that `[frc]` names, or that the robot program has as an object."""
+    """The device that `[frc]` names, or that the robot program has as an object; (-1, object): it turns backwards."""
     if isinstance(given, Device):
         return _named(part, given, counts)
+    sign = 1.0
+    if isinstance(given, tuple) and len(given) == 2 and given[0] in (-1, 1):
+        sign, given = float(given[0]), given[1]
     sim_state = getattr(given, "sim_state", None)
     if hasattr(sim_state, "set_raw_rotor_position"):
-        return Talon(given, _known(part, gearing), 1.0)
+        return Talon(given, _known(part, gearing), sign)
     if hasattr(sim_state, "set_raw_position"):
-        return Cancoder(given, 1.0)
+        return Cancoder(given, sign)
     if hasattr(sim_state, "set_raw_yaw"):
-        return Pigeon(given, 1.0)
+        return Pigeon(given, sign)
     if type(given).__module__.partition(".")[0] == "rev" and hasattr(given, "configAccessor"):
-        return Spark(given, _known(part, gearing), 1.0)
-    return _of_wpilib(part, given, counts)
+        return Spark(given, _known(part, gearing), sign)
+    return _of_wpilib(part, given, counts, sign)
 
 
 def _known(part: str, gearing: float | None) -> float:
@@ -315,21 +318,21 @@ def _gyro(device: Device) -> Gyro:
     return Gyro(angle.get, angle.set, rate, device.sign if device.kind == "CANGyro" else -device.sign)
 
 
-def _of_wpilib(part: str, given: Any, counts: float) -> Any:
+def _of_wpilib(part: str, given: Any, counts: float, sign: float) -> Any:
     import wpilib
     import wpilib.simulation as sim
 
     if isinstance(given, wpilib.PWMMotorController):
-        return Pwm(given.getChannel(), 1.0)
+        return Pwm(given.getChannel(), sign)
     if isinstance(given, wpilib.Encoder):
-        return Counter(sim.EncoderSim(given), counts, 1.0)
+        return Counter(sim.EncoderSim(given), counts, sign)
     if isinstance(given, wpilib.DutyCycleEncoder):
-        return Absolute(sim.DutyCycleEncoderSim(given).set, 1.0, 1.0)
+        return Absolute(sim.DutyCycleEncoderSim(given).set, 1.0, sign)
     if isinstance(given, wpilib.AnalogEncoder):
-        return Absolute(sim.AnalogEncoderSim(given).set, 1.0, 1.0)
+        return Absolute(sim.AnalogEncoderSim(given).set, 1.0, sign)
     if isinstance(given, wpilib.AnalogGyro):
         gyro = sim.AnalogGyroSim(given)
-        return Gyro(gyro.getAngle, gyro.setAngle, gyro.setRate, -1.0)
+        return Gyro(gyro.getAngle, gyro.setAngle, gyro.setRate, -sign)
     raise BadInput(f"frc.{part}: {shown(given)} is not a device that laconic.frc knows; give one of WPILib, Phoenix 6 "
                    "or REV, or drive laconic.frc.Drivetrain from your own physics.py")
 
@@ -349,7 +352,7 @@ class Engine:
         self._ports: dict[str, list[Any]] = {}
         for part in PARTS:
             given = parts.get(part) or ()
-            many = given if isinstance(given, Sequence) else (given,)
+            many = given if isinstance(given, Sequence) and not isinstance(given, str) else (given,)
             of_part = ratios[:wheels] if part.startswith("drive") else ratios[wheels:]
             self._check_count(part, many)
             self._ports[part] = [port_of(part, each, counts.get(part, 0.0), of_part[at] if at < len(of_part) else None)

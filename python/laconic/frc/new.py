@@ -285,7 +285,7 @@ def _frc(robot: Robot, count: float, drive: str, encoders: str, *steering: str) 
     lines = ["", f"{'[frc]':38}# devices of the robot program",
              "# A - before a name: this output turns its wheel backwards.", entry("drive", drive),
              entry("drive_encoder", encoders), entry("drive_counts", 2048, "in a turn of the wheel"), *steering,
-             entry("gyro", '"AnalogGyro[0]"'), entry("battery_V", "12.0", "without load"),
+             entry("gyro", '"ADXRS450[0]"'), entry("battery_V", "12.0", "without load"),
              entry("battery_resistance_ohm", 0.02, "as WPILib's BatterySim has it")]
     if robot.current_limit_A:
         lines.append(entry("current_limit_A", robot.current_limit_A * count, "of all motors of a wheel"))

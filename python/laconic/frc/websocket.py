@@ -25,8 +25,10 @@ MODES = ("auto", "teleop", "test")
 TURN = 2.0 * math.pi
 NEVER_S = 1e30            # between two counts of an encoder that stands
 FULL_SCALE_V = 5.0
+SPELLED = ("SimDevice", "CANMotor", "CANEncoder", "CANDutyCycle", "CANGyro", "DutyCycle", "Gyro")
 CONNECT_S = 0.25          # between two tries to connect
 Message = tuple[str, str, dict[str, Any]]  # type, device, data
+Place = tuple[str, str, str]               # type, device, name of a value without its direction
 
 
 @dataclass
@@ -41,13 +43,10 @@ class Figures:
     cycle_s: list[float] = field(default_factory=list)
 
 
-def data_key(device: Device) -> tuple[str, str, str]:
-    """Type and device of the message that sets an output, and the key of its data."""
-    if device.kind == "PWM":
-        return "PWM", device.name, "<speed"
-    if device.kind == "CANMotor":
-        return "CANMotor", device.name, "<percentOutput"
-    return "SimDevice", device.name, f"<{device.value}"
+def place_of(device: Device) -> Place:
+    """Where an output stands."""
+    value = {"PWM": "speed", "CANMotor": "percentOutput"}.get(device.kind, device.value)
+    return device.kind, device.name, value
 
 
 class Bridge:
@@ -60,10 +59,13 @@ class Bridge:
         for name, devices in (("drive", table.drive), ("steering", table.steering)):
             if not devices and (name == "drive" or robot.steered_count):
                 raise BadInput(f'{path}: frc.{name}: is missing; name the output of each motor, such as "PWM[0]"')
-        self._outputs: dict[tuple[str, str, str], float] = {
-            data_key(device): 0.0 for device in (*table.drive, *table.steering)}
+        if table.gyro and table.gyro.kind == "AnalogGyro":
+            raise BadInput(f'{path}: frc.gyro: WPILib sends no AnalogGyro through its WebSocket; take "ADXRS450[0]" '
+                           "or the SimDevice of your gyro, here and in the program")
+        self._outputs: dict[Place, float] = {place_of(device): 0.0 for device in (*table.drive, *table.steering)}
         self._encoders: dict[int, str] = {}   # number of the message by channel A
-        self._is_on, self._seen = False, set[str]()
+        self._keys: dict[Place, str] = {}     # as the program spells those of SimDevices, with the direction
+        self._is_on, self._seen = False, set[tuple[str, str]]()
         self.figures = Figures()
         self.watch: Callable[[float, Motion], None] = lambda time_s, motion: None
 
@@ -82,17 +84,20 @@ class Bridge:
             return
         self.figures.heard += 1
         for key, value in data.items():
-            place = (kind, device, key)
-            if place in self._outputs and isinstance(value, int | float) and math.isfinite(value):
-                self._outputs[place] = float(value)
-                self._seen.add(f"{kind}[{device}]")
+            name = key.lstrip("<>")
+            if kind in SPELLED:
+                self._keys[kind, device, name.lower()] = key
+            if (kind, device, name) in self._outputs and isinstance(value, int | float) and math.isfinite(value):
+                self._outputs[kind, device, name] = float(value)
+        if data.get("<init", kind in SPELLED):
+            self._seen.add((kind, device))
         if kind == "Encoder" and isinstance(channel := data.get("<channel_a"), int):
             self._encoders[channel] = device
         if kind == "DriverStation" and isinstance(on := data.get(">enabled"), bool):
             self._is_on = on
 
     def _of(self, devices: tuple[Device, ...]) -> list[float]:
-        return [device.sign * self._outputs[data_key(device)] if self._is_on else 0.0 for device in devices]
+        return [device.sign * self._outputs[place_of(device)] if self._is_on else 0.0 for device in devices]
 
     # ---- what it reads
 
@@ -106,7 +111,7 @@ class Bridge:
             for device, angle, rate in zip(devices, angles, rates, strict=False):
                 found += self._encoder(device, counts, device.sign * angle, device.sign * rate)
         if table.gyro:
-            found.append(gyro_message(table.gyro, motion))
+            found.append(self._spelled(*gyro_values(table.gyro, motion)))
         battery = self.robot.battery
         found.append(("RoboRIO", "", {">vin_voltage": battery.voltage_V, ">vin_current": battery.current_A}))
         if self.mode:
@@ -122,15 +127,20 @@ class Bridge:
             return [("Encoder", number, {">count": math.floor(angle * counts / TURN),
                                          ">period": 1.0 / speed if speed else NEVER_S})] if number is not None else []
         share = (angle / TURN) % 1.0
-        kind, name, data = {
-            "AnalogInput": ("AI", device.name, {">voltage": FULL_SCALE_V * share}),
-            "DutyCycleEncoder": ("DutyCycle", f"DutyCycleEncoder[{device.name}]", {">Position": share,
-                                                                                  ">position": share}),
-            "AnalogEncoder": ("SimDevice", f"AnalogEncoder[{device.name}]", {">Position": share}),
-            "CANEncoder": ("CANEncoder", device.name, {">position": angle / TURN, ">velocity": rate / TURN}),
-            "CANDutyCycle": ("CANDutyCycle", device.name, {">position": share}),
-            "SimDevice": ("SimDevice", device.name, {f">{device.value}": angle / TURN})}[device.kind]
-        return [(kind, name, data)]
+        if device.kind == "AnalogInput":
+            return [("AI", device.name, {">voltage": FULL_SCALE_V * share})]
+        kind, name, values = {
+            "DutyCycleEncoder": ("DutyCycle", f"DutyCycleEncoder[{device.name}]", {"Position": share}),
+            "AnalogEncoder": ("SimDevice", f"AnalogEncoder[{device.name}]", {"Position": share}),
+            "CANEncoder": ("CANEncoder", device.name, {"position": angle / TURN, "velocity": rate / TURN}),
+            "CANDutyCycle": ("CANDutyCycle", device.name, {"position": share}),
+            "SimDevice": ("SimDevice", device.name, {device.value: angle / TURN})}[device.kind]
+        return [self._spelled(kind, name, values)]
+
+    def _spelled(self, kind: str, device: str, values: Mapping[str, float]) -> Message:
+        """Values with the directions that the program gave them, > where it did not send them yet."""
+        return kind, device, {self._keys.get((kind, device, name.lower()), f">{name}"): value
+                              for name, value in values.items()}
 
     # ---- the run
 
@@ -148,7 +158,7 @@ class Bridge:
             listener.cancel()
             await socket.close()
         missing = [device.text.lstrip("-") for device in (*self.robot.table.drive, *self.robot.table.steering)
-                   if f"{data_key(device)[0]}[{data_key(device)[1]}]" not in self._seen]
+                   if place_of(device)[:2] not in self._seen]
         if missing:
             self._say(f"heard nothing of {', '.join(dict.fromkeys(missing))}; compare [frc] with the program's ports")
 
@@ -200,15 +210,15 @@ class Bridge:
             self._say("the robot program closed the connection")
 
 
-def gyro_message(device: Device, motion: Motion) -> Message:
+def gyro_values(device: Device, motion: Motion) -> tuple[str, str, dict[str, float]]:
     """A gyro of one axis counts clockwise; one on CAN about z, counter-clockwise."""
     angle = device.sign * math.degrees(motion.heading_rad)
     rate = device.sign * math.degrees(motion.yaw_rate_rad_per_s)
     if device.kind == "CANGyro":
-        return "CANGyro", device.name, {">angle_z": angle, ">rate_z": rate}
+        return "CANGyro", device.name, {"angle_z": angle, "rate_z": rate}
     if device.kind == "SimDevice":
-        return "SimDevice", device.name, {f">{device.value}": -angle}
-    return "Gyro", f"{device.kind}[{device.name}]", {">angle_x": -angle, ">rate_x": -rate}
+        return "SimDevice", device.name, {device.value: -angle}
+    return "Gyro", f"{device.kind}[{device.name}]", {"angle_x": -angle, "rate_x": -rate}
 
 
 def checked(url: str) -> str:

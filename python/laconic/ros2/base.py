@@ -7,7 +7,7 @@ and measures by what it believes of its wheels, which `[base]` of the scene may 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +23,7 @@ BANDWIDTH_RAD_PER_S = 20.0  # of a wheel's speed, where the scene gives no gain:
 SHARE_OF_STEP = 0.1         # the bandwidth is at most this over the step
 MOST_RECORDED_STEPS = 10**6
 IMPOSSIBLE = 1e-6           # of a command, m/s or rad/s
+TWIST_NAMES = ("linear.x", "linear.y", "angular.z")
 
 
 @dataclass(frozen=True)
@@ -47,20 +48,18 @@ class Loop:
 class Odometry:
     """Where the base takes itself for, from the angles that its encoders show."""
 
-    def __init__(self, beliefs: Beliefs):
-        self._estimate = beliefs.estimate
+    def __init__(self, travelled: Callable[[np.ndarray, np.ndarray], Sequence[float]]):
+        self._travelled = travelled  # ahead, left and turn between two looks at the encoders
         self._angles: np.ndarray | None = None
         self.x_m = self.y_m = self.heading_rad = 0.0
         self.velocity = (0.0, 0.0, 0.0)
 
     def see(self, angles_rad: np.ndarray, period_s: float) -> None:
         """Adds the motion since the last look, along an arc."""
-        if self._angles is None or period_s <= 0.0:
-            self._angles = angles_rad
-            return
-        ahead, left, turn = (self._estimate @ (angles_rad - self._angles)).tolist()
-        self._angles = angles_rad
-        self.add(ahead, left, turn, period_s)
+        before, self._angles = self._angles, angles_rad
+        if before is not None and period_s > 0.0:
+            ahead, left, turn = self._travelled(before, angles_rad)
+            self.add(ahead, left, turn, period_s)
 
     def add(self, ahead: float, left: float, turn: float, period_s: float) -> None:
         """A motion in the axes of where it began, along an arc."""
@@ -105,7 +104,12 @@ class Base:
         return motion, loop_of(self.scene, self.table)
 
     def _new_odometry(self) -> Odometry:
-        return Odometry(self.beliefs)
+        return Odometry(self._travelled)
+
+    def _travelled(self, before: np.ndarray, after: np.ndarray) -> Sequence[float]:
+        """Ahead, left and turn between two looks at the encoders."""
+        found: list[float] = (self.beliefs.estimate @ (after - before)).tolist()
+        return found
 
     @property
     def joint_names(self) -> list[str]:
@@ -123,12 +127,16 @@ class Base:
         """Sets the velocity of a robot's body frame; returns what of it was limited or is impossible, in words."""
         given = np.array([ahead, left, yaw_rate])
         wanted = self.beliefs.possible @ given
-        remarks = [f"{name} = {asked:g} is impossible for these wheels and becomes {got:g}" for name, asked, got in
-                   zip(("linear.x", "linear.y", "angular.z"), given, np.round(wanted, 9) + 0.0, strict=True)
-                   if abs(asked - got) > IMPOSSIBLE]
-        remarks += self._limit(wanted)
+        remarks = [*self._impossible(TWIST_NAMES, given, wanted), *self._limit(wanted)]
         self._wanted[:, robot] = wanted
         return remarks
+
+    @staticmethod
+    def _impossible(names: Sequence[str], given: np.ndarray, wanted: np.ndarray) -> list[str]:
+        """What of a velocity the wheels do not allow, in words."""
+        return [f"{name} = {asked:g} is impossible for these wheels and becomes {got:g}"
+                for name, asked, got in zip(names, given, np.round(wanted, 9) + 0.0, strict=False)
+                if abs(asked - got) > IMPOSSIBLE]
 
     def _limit(self, wanted: np.ndarray) -> list[str]:
         """Holds a velocity within the limits of the scene; returns what was limited, in words."""
@@ -151,7 +159,7 @@ class Base:
     def ackermann(self, robot: int, speed_m_per_s: float, steering_rad: float, *, acceleration_m_per_s2: float = 0.0,
                   steering_rad_per_s: float = 0.0) -> list[str]:
         """Drives a car by the angle of a wheel on its middle line; returns as `command`."""
-        raise NotImplementedError  # which is_car tells
+        return ["a steering angle is impossible for these wheels"]
 
     def advance(self, steps: int) -> list[tuple[int, Refused]]:
         """Takes steps of all robots; returns those whose step the core refused, which stand still from then on."""

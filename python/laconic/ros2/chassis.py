@@ -13,13 +13,23 @@ from typing import Any
 
 import numpy as np
 
-from laconic.core.articulated import CARRIAGE
+from laconic.can.play.vehicle import about_hinge
+from laconic.core.articulated import CARRIAGE, ArticulatedMotion
 from laconic.errors import BadInput
 from laconic.scene import Scene
+from laconic.scene.base import BaseTable
+from laconic.scene.hinge_signals import RATE, TWIST, VOLTAGE
 
 STRAIGHT = np.array([1.0, 0.0, 0.0])
 HALVINGS = 40          # of the way to a command that the stops do not allow
 TINY = 1e-12
+BANDWIDTH_RAD_PER_S = 8.0    # of a steering motor's controller, which is damped critically
+INSET_RAD = 1e-6             # what the base keeps away from a stop, so that the scene's own limits never act
+OF_MOTOR_RAD = 5e-3          # the same where a motor steers, which may pass its goal
+CLEAR_RAD = 0.02             # of a turning centre from a steered wheel, in twists scaled by the vehicle's length
+AROUND_RAD = 0.1             # the same on the way to another twist
+SHARE = 1.0 - 1e-9           # of a rate limit, for the same reason
+PARTS_OF_TURN = 30
 
 
 @dataclass(frozen=True)
@@ -193,3 +203,148 @@ def _projected(direction: np.ndarray, places: np.ndarray, arms: np.ndarray) -> n
     found[:, 2] = (np.conj(direction) * 1j * places).real
     found[:, 3:] = (np.conj(direction)[:, None] * 1j * arms).real
     return found
+
+
+# ---- how to steer them
+
+class Steering:
+    """Turns the steered hinges of one robot towards a motion, within rates and stops."""
+
+    def __init__(self, chassis: Chassis, scene: Scene, table: BaseTable):
+        self.step_s, self._size = scene.run.step_s, table.believed_size
+        self._most_V = table.steering_voltage_limit_V or math.inf
+        self.twist, self.goal = STRAIGHT, STRAIGHT  # of coordinated hinges, and the direction that is wished
+        self._coordinated = [each for each in chassis.steered if each.kind == "coordinated"]
+        self._singly = [each for each in chassis.steered if each.kind != "coordinated"]
+        self._places = np.array([each.place for each in self._coordinated])
+        self._rates = np.array([each.rate_limit_rad_per_s for each in self._coordinated])
+        self._lows = np.array([each.low_rad + INSET_RAD for each in self._coordinated])
+        self._highs = np.array([each.high_rad - INSET_RAD for each in self._coordinated])
+        self._motors = {each.name: self._motor(scene, each.at) for each in self._singly if each.kind == "motor"}
+        self._scale = np.array([1.0, 1.0, chassis.length_m])
+        self._poles = _poles(self._places, self._scale) if chassis.axle_x_m is None else np.zeros((0, 3))
+
+    @property
+    def signals(self) -> list[str]:
+        """The inputs that it sets."""
+        found = [f"{TWIST}[{number}]" for number in (1, 2, 3)] if self._coordinated else []
+        return found + [f"{RATE if each.kind == 'prescribed' else VOLTAGE}[{each.name}]" for each in self._singly]
+
+    def inputs(self, motion: ArticulatedMotion, rate_limit: float) -> list[float]:
+        """Values of `signals` for the coming step."""
+        angles, found = motion.hinge_angle_rad, list[float]()
+        if self._coordinated:
+            self._turn(angles, rate_limit)
+            ahead, left, turn = self.twist.tolist()
+            found += [ahead, left, turn * self._size]  # as the true places of the hinges need it
+        for each in self._singly:
+            angle = each.angle(self.goal, float(angles[each.at]))
+            inset = INSET_RAD if each.kind == "prescribed" else OF_MOTOR_RAD
+            goal = min(max(angles[each.at] if angle is None else angle, each.low_rad + inset), each.high_rad - inset)
+            if each.kind == "prescribed":
+                most = SHARE * min(each.rate_limit_rad_per_s, rate_limit)
+                found.append(min(max((goal - float(angles[each.at])) / self.step_s, -most), most))
+            else:
+                found.append(self._voltage(each, goal - float(angles[each.at]),
+                                           float(motion.hinge_rate_rad_per_s[each.at]), rate_limit))
+        return found
+
+    # ---- hinges that share one twist
+
+    def _turn(self, angles: np.ndarray, rate_limit: float) -> None:
+        """Takes the twist of coordinated hinges as far towards the goal as rates and stops allow in one step."""
+        mine = angles[[each.at for each in self._coordinated]]
+        goal = self.clear(self.goal)
+        targets = [self._via(unit(sign * goal, self._scale)) for sign in (1.0, -1.0)]
+        turns = [self._turns(self.twist, each) for each in targets]
+        ways = sorted(range(2), key=lambda k: (bool(self._beyond(mine + turns[k])), float(np.abs(turns[k]).max())))
+        target, turn = targets[ways[0]], turns[ways[0]]
+        rates = SHARE * self.step_s * np.minimum(self._rates, rate_limit)
+        if not turn.any() and not (target != self.twist).any():
+            return
+        if (np.abs(turn) <= rates).all() and not self._beyond(mine + turn):
+            self.twist = target
+            return
+        low, high = 0.0, 1.0
+        for _ in range(PARTS_OF_TURN):
+            middle = 0.5 * (low + high)
+            turn = self._turns(self.twist, self.twist + middle * (target - self.twist))
+            is_far = (np.abs(turn) > rates).any() or self._beyond(mine + turn)
+            low, high = (low, middle) if is_far else (middle, high)
+        if low:
+            self.twist = unit(self.twist + low * (target - self.twist), self._scale)
+
+    def clear(self, twist: np.ndarray) -> np.ndarray:
+        """The twist, or one beside it, about whose centre every steered wheel can point."""
+        made = unit(twist, self._scale) * self._scale
+        for pole in self._poles:
+            along = float(made @ pole)
+            if along > math.cos(CLEAR_RAD):
+                aside = made - along * pole
+                if np.linalg.norm(aside) < 1e-9:
+                    aside = np.cross(pole, [1.0, 0.0, 0.0] if abs(pole[0]) < 0.9 else [0.0, 1.0, 0.0])
+                made = math.cos(CLEAR_RAD) * pole + math.sin(CLEAR_RAD) * aside / np.linalg.norm(aside)
+                return np.asarray(made / self._scale)
+        return twist
+
+    def _via(self, target: np.ndarray) -> np.ndarray:
+        """The target, or where to go first, so that on the way no turning centre lies in a steered wheel.
+
+        Twists of one size are points on a sphere, and those that leave a wheel without a direction its poles."""
+        now, goal = self.twist * self._scale, target * self._scale
+        axis = np.cross(now, goal)
+        size = float(np.linalg.norm(axis))
+        if size < 1e-9 or not len(self._poles):
+            return target
+        axis /= size
+        ahead, first, found = np.cross(axis, now), math.atan2(size, float(now @ goal)), target
+        for pole in self._poles:
+            off = float(axis @ pole)
+            wide = min(AROUND_RAD, 0.5 * math.acos(min(max(float(goal @ pole), -1.0), 1.0)))
+            along = math.atan2(float(pole @ ahead), float(pole @ now))
+            if abs(off) < wide and 0.0 < along < first:
+                aside = math.copysign(1.0, -off) * (axis - off * pole)
+                aside /= np.linalg.norm(aside)
+                first = along
+                found = (math.cos(1.2 * wide) * pole + math.sin(1.2 * wide) * aside) / self._scale
+        return found
+
+    def _beyond(self, angles: np.ndarray) -> bool:
+        return bool(((angles > self._highs) | (angles < self._lows)).any())
+
+    def _velocities(self, twist: np.ndarray) -> np.ndarray:
+        found: np.ndarray = complex(twist[0], twist[1]) + 1j * twist[2] * self._places
+        return found
+
+    def _turns(self, now: np.ndarray, then: np.ndarray) -> np.ndarray:
+        return np.asarray(np.angle(self._velocities(then) * np.conj(self._velocities(now))))
+
+    # ---- hinges with motors
+
+    def _motor(self, scene: Scene, at: int) -> tuple[float, float]:
+        """P [V/rad] and D [V·s/rad] of a steering motor."""
+        body = scene.vehicle["body"][at]
+        gain, bandwidth = body["gain_Nm_per_V"], min(BANDWIDTH_RAD_PER_S, 0.1 / self.step_s)
+        inertia = about_hinge(body)
+        damping = max(2.0 * bandwidth * inertia - body.get("damping_Nms", 0.0), 0.0)
+        stiffness = bandwidth * max(bandwidth * inertia, 0.5 * body.get("damping_Nms", 0.0))
+        return stiffness / gain, damping / gain
+
+    def _voltage(self, each: Steered, way: float, rate: float, rate_limit: float) -> float:
+        proportional, derivative = self._motors[each.name]
+        most = min(each.rate_limit_rad_per_s, rate_limit)
+        way = min(max(way, -most / BANDWIDTH_RAD_PER_S), most / BANDWIDTH_RAD_PER_S)
+        return min(max(proportional * way - derivative * rate, -self._most_V), self._most_V)
+
+
+def _poles(places: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Twists about each place, both ways, of size 1 in the scaled metric."""
+    found = np.array([(place.imag, -place.real, 1.0) for place in places]).reshape(-1, 3) * scale
+    found /= np.linalg.norm(found, axis=1, keepdims=True)
+    return np.concatenate([found, -found])
+
+
+def unit(twist: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """The twist of size 1 in that metric."""
+    made = twist / float(np.abs(twist).max())  # first, as squares of the smallest numbers are 0
+    return np.asarray(made / np.linalg.norm(made * scale))

@@ -19,11 +19,13 @@ from typing import Any, ClassVar
 try:
     from cyclonedds.idl import IdlStruct
     from cyclonedds.idl import types as idl_types
+    from cyclonedds.idl._support import Buffer
     from cyclonedds.idl.annotations import final
     HAS_IDL = True
 except ImportError:  # Zenoh needs none
     HAS_IDL = False
 
+MOST_PADDING = 8  # bytes behind a message, by which some middlewares fill it up
 DEFINITIONS = """
 builtin_interfaces/msg/Time: int32 sec, uint32 nanosec
 std_msgs/msg/Header: builtin_interfaces/msg/Time stamp, string frame_id
@@ -192,7 +194,19 @@ def _made(name: str, gid_bytes: int, with_header: bool) -> Any:
     made.__module__ = __name__
     made = final(dataclass(made))
     made.__idl__.populate()  # type: ignore[attr-defined]
+    made.deserialize = classmethod(_whole)  # type: ignore[attr-defined]
     return made
+
+
+def _whole(cls: Any, data: Any, *words: Any, **more: Any) -> Any:
+    """A message of these bytes; ValueError where bytes are left over, as after a type with more fields."""
+    if isinstance(data, Buffer):
+        return cls.__idl__.deserialize(data, *words, **more)
+    buffer = Buffer(data, align_offset=4)
+    found = cls.__idl__.deserialize(buffer, *words, **more)
+    if len(data) - buffer.tell() >= MOST_PADDING:
+        raise ValueError("bytes are left over")
+    return found
 
 
 @cache
@@ -260,9 +274,13 @@ class Plain:
         start = CDR_HEADER if has_header else 0
         order = "<" if not has_header or data[1:2] == b"\x01" else ">"
         try:
-            return _read(cls, Source(bytes(data[start:]), order))
+            source = Source(bytes(data[start:]), order)
+            found = _read(cls, source)
         except (struct.error, UnicodeDecodeError, IndexError) as error:
             raise ValueError(f"these bytes are no {cls.__name__}") from error
+        if len(source.data) - source.at >= MOST_PADDING:
+            raise ValueError("bytes are left over")
+        return found
 
 
 class Source:

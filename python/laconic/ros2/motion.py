@@ -66,6 +66,9 @@ class Motion(Protocol):
     def grip(self, robot: int) -> str:
         """What the ground could not give since the last question, in words; empty where nothing is wrong."""
 
+    def folded(self, robot: int) -> Sequence[str]:
+        """Trailers that have folded since the last question, in words that begin with their names."""
+
 
 def motion_of(scene: Scene, robots: int) -> Singles | Lanes:
     """A batch where it can step the vehicles and nothing is lost, else one by one."""
@@ -84,6 +87,21 @@ def product(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
     """(N, robots) of (N, 3) and (3, robots), by operations whose bits do not depend on how many robots there are."""
     found: np.ndarray = rows[:, 0:1] * columns[0] + rows[:, 1:2] * columns[1] + rows[:, 2:3] * columns[2]
     return found
+
+
+Velocity = tuple[float, float, float]  # ahead, left, yaw rate
+
+
+def of_origin(centre: tuple[float, float], velocity: np.ndarray, yaw_rate: float) -> Velocity:
+    """The velocity of the body frame's origin, of that of the centre of mass and its place in the body frame."""
+    x, y = centre
+    return float(velocity[0]) + yaw_rate * y, float(velocity[1]) - yaw_rate * x, yaw_rate
+
+
+def felt(before: Velocity, now: Velocity, period_s: float) -> Velocity:
+    """What an ideal IMU in the origin shows: the mean acceleration between two velocities, and the yaw rate."""
+    ahead, left = ((now[axis] - before[axis]) / period_s if period_s else 0.0 for axis in range(2))
+    return ahead - now[2] * now[1], left + now[2] * now[0], now[2]
 
 
 class Geometry:
@@ -111,11 +129,6 @@ class Geometry:
         sine, cosine = math.sin(heading_rad), math.cos(heading_rad)
         x, y = self.centre
         return Initial(x_m=x_m + cosine * x - sine * y, y_m=y_m + sine * x + cosine * y, heading_rad=heading_rad)
-
-    def of_origin(self, centre_velocity: np.ndarray, yaw_rate: float) -> tuple[float, float, float]:
-        """The velocity of the body frame's origin."""
-        x, y = self.centre
-        return float(centre_velocity[0]) + yaw_rate * y, float(centre_velocity[1]) - yaw_rate * x, yaw_rate
 
 
 class Single:
@@ -207,7 +220,7 @@ class Singles:
             self.core.lib.laconic_grip_watch(each.grip, plant.contact, plant._at("model"),
                                              plant.reactions(each.held), plant.steps)
         return Seen(pose.origin_x_m, pose.origin_y_m, pose.heading_rad,
-                    self.geometry.of_origin(velocity, float(yaw_rate)), angles.tolist(), speeds.tolist(), shown,
+                    of_origin(self.geometry.centre, velocity, float(yaw_rate)), angles.tolist(), speeds.tolist(), shown,
                     (float(acceleration[0]), float(acceleration[1]), reading.imu_yaw_rate_rad_per_s), supply)
 
     def _counted(self, each: Single, counts: np.ndarray) -> np.ndarray:
@@ -226,6 +239,10 @@ class Singles:
         """As Motion.place."""
         moved = replace(self.scene, initial=self.geometry.start(x_m, y_m, heading_rad))
         self.robots[robot] = Single(moved, self.core)
+
+    def folded(self, robot: int) -> Sequence[str]:
+        """As Motion.folded: nothing is hung on these."""
+        return ()
 
     def has_refused(self, robot: int) -> bool:
         """As Motion.has_refused."""
@@ -282,14 +299,11 @@ class Lanes:
         plant.c.state = self.batch.state(robot)[0]
         pose = plant.pose
         velocity, yaw_rate = plant.body_velocity()
-        now, before = self.geometry.of_origin(velocity, float(yaw_rate)), self._before[robot]
+        now, before = of_origin(self.geometry.centre, velocity, float(yaw_rate)), self._before[robot]
         self._before[robot] = now
-        rate = float(yaw_rate)
-        ahead, left = ((now[axis] - before[axis]) / period_s if period_s else 0.0 for axis in range(2))
         angles = plant.wheel_angles()
         return Seen(pose.origin_x_m, pose.origin_y_m, pose.heading_rad, now, angles.tolist(),
-                    plant.wheel_speeds().tolist(), angles.astype(float), (ahead - rate * now[1], left + rate * now[0],
-                                                                          rate))
+                    plant.wheel_speeds().tolist(), angles.astype(float), felt(before, now, period_s))
 
     def restart(self, robot: int) -> None:
         """As Motion.restart."""
@@ -301,6 +315,10 @@ class Lanes:
         start = self.geometry.start(x_m, y_m, heading_rad)
         self.batch.start(robot, x_m=start.x_m, y_m=start.y_m, heading_rad=start.heading_rad)
         self._told[robot], self._before[robot] = False, (0.0, 0.0, 0.0)
+
+    def folded(self, robot: int) -> Sequence[str]:
+        """As Motion.folded: nothing is hung on these."""
+        return ()
 
     def has_refused(self, robot: int) -> bool:
         """As Motion.has_refused."""

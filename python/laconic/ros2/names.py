@@ -23,6 +23,7 @@ SURE, UNSURE, NOT_KNOWN = 1e-3, 1e-2, 1e6  # variances of odometry: along and ac
 NANO = 10**9
 MOST_DOMAIN = 232  # beyond it the ports of UDP end
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+BEST_EFFORT, OTHER_FIELDS = "best effort", "other fields"  # why a publisher is not heard
 MOST_AT_ONCE = 64  # messages of one reader in one poll
 
 
@@ -44,6 +45,12 @@ def check_name(option: str, name: str) -> str:
         raise BadInput(f"{option}: {name} is not a name of ROS; give letters, digits and _ that begin with a letter, "
                        "such as robot1")
     return "/" + "/".join(parts)
+
+
+def check_domain(domain: int) -> None:
+    """BadInput for a number that is no domain."""
+    if not 0 <= domain <= MOST_DOMAIN:
+        raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
 
 
 def topic_name(prefix: str, namespace: str, topic: str, suffix: str = "") -> str:
@@ -102,8 +109,12 @@ class Middleware(Protocol):
     def namesakes(self) -> set[str]:
         """Full names of nodes of others that are ours, too."""
 
-    def new_writers(self) -> Iterator[tuple[str, str]]:
-        """Topics and types, by their names in DDS, of publishers that have come since the last call."""
+    def remarks(self) -> Iterator[str]:
+        """Lines on the way to others that have changed since the last call."""
+
+    def new_writers(self) -> Iterator[tuple[str, str, str]]:
+        """Topics and types, by their names in DDS, of publishers that have come since the last call; then of those
+        whose type has our name and that are not heard all the same, with the reason."""
 
     def close(self) -> None:
         """Leaves, so that peers know at once."""

@@ -15,6 +15,7 @@ from laconic.ros2.motion import GRAVITY_M_PER_S2, Seen
 from laconic.ros2.names import (
     LATCHED,
     NANO,
+    OTHER_FIELDS,
     SURE,
     TRANSFORMS,
     USUAL,
@@ -94,6 +95,8 @@ class RobotNode:
         self._heard_types = {self.command_topic: kinds} | {
             topic_name("rt", namespace, topic): [ACKERMANN] if base.is_car else [] for topic in DRIVE_TOPICS}
         self._poses = self.node.subscription("initialpose", POSE_STAMPED) if has_map else None
+        if has_map:
+            self._heard_types[topic_name("rt", namespace, "initialpose")] = [POSE_STAMPED]
         self._stream = Quality(max(USUAL.depth, math.ceil(KEPT_S * rate_Hz)))
         tf = ("/tf", "/tf_static") if shares_tf else ("tf", "tf_static")
         slope_rad = base.scene.vehicle.get("ground", {}).get("slope_rad", 0.0)
@@ -212,8 +215,9 @@ class RobotNode:
             for message in polled(drives, partial(self._tell, now_s, "unreadable", text)):
                 self._obey_drive(message, topic, now_s)
         if self._poses is not None:
-            for message in polled(self._poses):
-                self._move(message.pose.pose, "initialpose", now_s)
+            text = "a message on initialpose cannot be read as its type and is ignored"
+            for message in polled(self._poses, partial(self._tell, now_s, "unreadable", text)):
+                self._start_at(message, now_s)
         command = self.command
         if not command.has_stopped and now_s - command.heard_s > self.watchdog_s:
             command.has_stopped = True
@@ -244,6 +248,13 @@ class RobotNode:
                        f"{LARGEST:g}, or an angle of a right angle or more, and is ignored; the last one holds "
                        "until the watchdog")
             return
+        below = [f"{name} = {value:g}" for name, value in (
+            ("acceleration", drive.acceleration), ("steering_angle_velocity", drive.steering_angle_velocity),
+            ("jerk", drive.jerk)) if value < 0.0]
+        if below:
+            self._tell(now_s, "limit below 0", f"a command on {topic} has {' and '.join(below)}, and is ignored; give "
+                       "limits above 0, for both ways, or 0 for those of the scene")
+            return
         if drive.jerk:
             self._tell(now_s, "jerk", f"a command on {topic} limits the jerk, which the base leaves out")
         self._heard(message, topic, now_s)
@@ -256,10 +267,21 @@ class RobotNode:
         """Notes a command that counts."""
         command, publisher = self.command, int(message.sample_info.publication_handle)
         if command.publisher not in (0, publisher) and now_s - command.heard_s <= self.watchdog_s:
-            self._tell(now_s, "two commanders", f"two publishers command {topic} at once; the last command counts, so "
-                       "stop one of them")
+            where = f"command {topic}" if topic == command.topic else \
+                f"command the robot, on {' and '.join(sorted((topic, command.topic)))},"
+            self._tell(now_s, "two commanders", f"two publishers {where} at once; the last command counts, so stop one "
+                       "of them")
         command.heard_s, command.publisher, command.has_stopped, command.topic = now_s, publisher, False, topic
         command.count += 1
+
+    def _start_at(self, message: Any, now_s: float) -> None:
+        """Obeys initialpose in the map's frame."""
+        frame, wanted = message.header.frame_id.lstrip("/"), self.frames["map"]
+        if frame not in ("", wanted):
+            self._tell(now_s, "other frame", f"initialpose is in the frame {frame} and is ignored; give it in "
+                       f"{wanted}, or name that frame with --frame map=")
+        elif self._move(message.pose.pose, "initialpose", now_s) and not frame:
+            self._tell(now_s, "no frame", f"initialpose names no frame, and is taken as one in {wanted}")
 
     def _move(self, pose: Any, who: str, now_s: float) -> bool:
         turn = pose.orientation
@@ -275,12 +297,18 @@ class RobotNode:
                    f"yaw = {yaw:.4g} rad")
         return True
 
-    def wrong_type(self, topic: str, kind: str, now_s: float) -> None:
-        """A publisher has come; tells the user if its messages cannot be commands of this robot."""
-        types = self._heard_types.get(topic)
+    def wrong_type(self, topic: str, kind: str, why: str, now_s: float) -> None:
+        """A publisher has come; tells the user if its messages cannot be commands of this robot. `why`: as in
+        Middleware.new_writers."""
+        types, own = self._heard_types.get(topic), topic.rpartition("/")[2]
         if types is None or kind in map(dds_name, types):
+            if types is not None and why == OTHER_FIELDS:
+                self._tell(now_s, f"type {kind}: fields", f"a publisher on {own} sends {ros_type(kind)} with other "
+                           "fields than ROS has, which is not heard; build it of the definition of ROS")
+            elif types is not None and why:
+                self._tell(now_s, f"type {kind}: quality", f"a publisher on {own} offers best effort, which is not "
+                           "heard; make it reliable")
             return
-        own = topic.rpartition("/")[2]
         names = " or ".join(each.rpartition("/")[2] for each in types)
         if types:
             self._tell(now_s, f"type {kind}", f"a publisher on {own} sends {ros_type(kind)}, which is not heard; "
@@ -288,6 +316,14 @@ class RobotNode:
         elif kind == dds_name(ACKERMANN):
             self._tell(now_s, f"type {kind}", f"a publisher on {own} sends {ros_type(kind)}, which is for cars with a "
                        "fixed axle and steered wheels; send Twist on cmd_vel")
+
+    def unreadable(self, topic: str, kind: str, now_s: float) -> bool:
+        """The library has dropped a message on a topic; tells the user, and returns whether it was for this robot."""
+        if kind not in map(dds_name, self._heard_types.get(f"rt{topic}", ())):
+            return False
+        self._tell(now_s, "unreadable", f"a message on {topic.rpartition('/')[2]} cannot be read as its type and is "
+                   "ignored")
+        return True
 
     def _tell(self, now_s: float, event: str, text: str) -> None:
         self.told.tell(now_s, f"{self.node.full_name}: {event}", f"{self.node.full_name}: {text}")

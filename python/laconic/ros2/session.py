@@ -7,7 +7,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +16,11 @@ import numpy as np
 from laconic.base.outputs import opened
 from laconic.base.text_file import text_of_file
 from laconic.errors import BadInput, ResultFails
+from laconic.robot.importer.xml_file import root_of
 from laconic.ros2 import FRAMES, USUAL_DISTRIBUTION
 from laconic.ros2.base import Base
 from laconic.ros2.hinged import base_of
+from laconic.ros2.lines import LibraryLines, kind_of, unreadable_of
 from laconic.ros2.maps import Map, Scanner
 from laconic.ros2.messages import new
 from laconic.ros2.names import NANO, Middleware, Out, check_name, diagnostics, sent
@@ -36,6 +38,7 @@ JUMP_S = 0.1             # of the system's clock against the monotonic one
 MOST_LATENESS = 100_000  # that are kept
 MOST_RECORDED = 14 * 2**20  # bytes of a scene that can be read again
 MOST_ROBOTS = 1000
+MOST_SPEED = 1000.0
 
 
 @dataclass(frozen=True)
@@ -94,18 +97,19 @@ class Session:
     """Robots on the wire from the first cycle to the last."""
 
     def __init__(self, scene: Scene, options: Ros2Options, say: Callable[[str], None] = lambda _: None,
-                 clock: Clock | None = None):
-        self.scene, self.options, self.clock, self.say = scene, options, clock or Clock(), say
+                 clock: Clock | None = None, library: LibraryLines | None = None):
+        self.options, self.clock, self.say, self.library = options, clock or Clock(), say, library
         self.period_s, self.steps = cycle_of(scene, options)
         check_options(options)
-        self.told, self.base = Told(say), base_of(scene, options.robots)
+        self.told, self.base = Told(say), base_at_its_start(scene, options.robots)
+        self.scene = self.base.scene
         spread(self.base, options)
         self.base.record, self.base.is_recording = ([], True) if options.record else (None, False)
         self.refusals: dict[int, str] = {}
         self.lateness, self.cycles, self.time_ns = Lateness(), 0, 0
         self.map = Map.read(options.map_file) if options.map_file else None
         self._parent, self._frames = check_name("--namespace", options.namespace), frames_of(options.frames)
-        self._description = None if options.urdf is None else text_of_file(options.urdf, "a URDF file").text
+        self._description = None if options.urdf is None else description_of(options.urdf)
         self.participant = middleware_of(options)
         try:
             self._join()
@@ -193,10 +197,14 @@ class Session:
                     del self.refusals[number]
         if self._is_due("graph", now_s, GRAPH_S):
             self._look_at_graph(now_s)
+            self._pass_on(now_s)
         if self._is_due("diagnostics", now_s, DIAGNOSTICS_S):
             late = self.lateness.late
-            for robot in self.robots:
+            for number, robot in enumerate(self.robots):
                 robot.report(now_s)
+                for text in self.base.motion.folded(number):
+                    robot.told.tell(now_s, f"{robot.node.full_name}: {text.partition(':')[0]}",
+                                    f"{robot.node.full_name}: {text}")
             sent(self._diagnostics, diagnostics(
                 (robot.status(self.refusals.get(number, ""), self.base.motion.grip(number), late)
                  for number, robot in enumerate(self.robots)), self.time_ns))
@@ -210,9 +218,18 @@ class Session:
         for name in self.participant.namesakes():
             self.told.tell(now_s, f"{name}: namesake", f"another node is called {name} in domain "
                            f"{self.options.domain}; give --namespace or --domain")
-        for topic, kind in self.participant.new_writers():
+        for topic, kind, why in self.participant.new_writers():
             for robot in self.robots:
-                robot.wrong_type(topic, kind, now_s)
+                robot.wrong_type(topic, kind, why, now_s)
+        for text in self.participant.remarks():
+            self.say(text)
+
+    def _pass_on(self, now_s: float) -> None:
+        """Tells of what libraries have printed."""
+        for line in self.library.take() if self.library else ():
+            found = unreadable_of(line)
+            if found is None or not any([robot.unreadable(*found, now_s) for robot in self.robots]):
+                self.told.tell(now_s, kind_of(line), f"the library of the wire: {line}")
 
     # ---- the loop
 
@@ -237,6 +254,10 @@ class Session:
 
     def _skip(self, late_s: float) -> None:
         self.lateness.skipped_s += late_s
+        if self.options.speed > 1.0:
+            self.told.tell(self.clock.now_s(), "late", f"--speed {self.options.speed:g} is more than this machine can, "
+                           "so the robot runs as fast as it can; the figures at the end state how fast")
+            return
         self.told.tell(self.clock.now_s(), "late", f"the machine was {late_s:.2g} s too late for a cycle; the robot's "
                        "time stood still meanwhile")
 
@@ -253,12 +274,15 @@ class Session:
 
     def figures(self) -> dict[str, Any]:
         """What was done."""
-        seen = self.base.look()[0]
-        return {"cycles": self.cycles, "period_s": self.period_s, "robots": self.options.robots,
+        self._pass_on(self.clock.now_s())
+        ends = [{"name": robot.node.full_name, "x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad}
+                for robot, seen in zip(self.robots, self.base.look(), strict=True)]
+        return {"cycles": self.cycles, "is_faster": self.options.speed > 1.0, "period_s": self.period_s,
+                "robots": self.options.robots,
                 "messages": sum(robot.messages for robot in self.robots),
                 "commands": sum(robot.command.count for robot in self.robots), "late_cycles": self.lateness.late,
                 "skipped_s": self.lateness.skipped_s, **self.lateness.figures(),
-                "final": {"x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad},
+                "final": {key: value for key, value in ends[0].items() if key != "name"}, "ends": ends,
                 "events": dict(self.told.counts)}
 
 
@@ -287,6 +311,9 @@ def check_options(options: Ros2Options) -> None:
             raise BadInput(f"{name}: {value:g} is not usable; give a finite number above zero")
     if options.speed != 1.0 and not options.is_sim_time:
         raise BadInput(f"--speed: {options.speed:g} needs stamps of simulated time; add --sim-time")
+    if options.speed > MOST_SPEED:
+        raise BadInput(f"--speed: {options.speed:g} is more than any machine can; give at most {MOST_SPEED:g}, which "
+                       "runs as fast as it can")
     if options.robots > 1 and options.record:
         raise BadInput("--record: keeps the run of one robot; leave out --robots")
     if options.map_file and not options.is_loopback:
@@ -320,7 +347,31 @@ def frames_of(given: Sequence[str]) -> dict[str, str]:
             raise BadInput(f"--frame: {each} is not NAME=FRAME; give one of {', '.join(FRAMES)}, such as "
                            "base=base_footprint")
         found[name] = frame.lstrip("/")
+    for name, frame in found.items():
+        if others := [other for other, its in found.items() if its == frame and other != name]:
+            raise BadInput(f"--frame: {name} and {others[0]} are both called {frame}; give each frame a name of its "
+                           "own")
     return found
+
+
+def description_of(path: Path) -> str:
+    """The text of a URDF; BadInput for another file."""
+    text = text_of_file(path, "a URDF file").text
+    root = root_of(path, text, "is no URDF, which is XML")
+    if root.tag != "robot" or root.find("link") is None and root.find("joint") is None:
+        raise BadInput(f"{path}: is no URDF; give the file with <robot>, its links and joints (of xacro: what xacro "
+                       "makes of it)")
+    return text
+
+
+def base_at_its_start(scene: Scene, robots: int) -> Base:
+    """The base, whose body frame begins where the scene puts the centre of mass, so that odometry and truth agree."""
+    made = base_of(scene, robots)
+    seen, start = made.look()[0], scene.initial
+    if (seen.x_m, seen.y_m) == (start.x_m, start.y_m):
+        return made
+    moved = replace(start, x_m=2.0 * start.x_m - seen.x_m, y_m=2.0 * start.y_m - seen.y_m)
+    return base_of(replace(scene, initial=moved), robots)
 
 
 def spread(base: Base, options: Ros2Options) -> None:
@@ -351,6 +402,9 @@ def recorded(session: Session, rows: np.ndarray) -> str:
     """The text of a scene with these inputs, step by step."""
     base, step_s = session.base, session.scene.run.step_s
     entries = read_toml(session.scene.path).plain()
+    start = session.scene.initial
+    if (start.x_m, start.y_m) != (0.0, 0.0):
+        entries["initial"] = {**(entries.get("initial") or {}), "x_m": start.x_m, "y_m": start.y_m}
     entries["run"] = {**{key: value for key, value in entries["run"].items() if key != "tolerance"},
                       "duration_s": len(rows) * step_s, "step_s": step_s, "method": session.scene.run.method,
                       "real": session.scene.run.real}

@@ -6,13 +6,14 @@ DDS is PyPI's cyclonedds. Everything is polled from one thread, so that a run do
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
-from cyclonedds.core import DDSException
+from cyclonedds.core import DDSException, InstanceState
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter, Publisher
 from cyclonedds.qos import Policy, Qos
@@ -23,10 +24,24 @@ from cyclonedds.util import duration
 from laconic.errors import BadInput
 from laconic.ros2 import GID_BYTES, USUAL_DISTRIBUTION, WITHOUT_HASHES
 from laconic.ros2.messages import dds_name, message_class, type_hash
-from laconic.ros2.names import LATCHED, MOST_AT_ONCE, MOST_DOMAIN, USUAL, Quality, polled, sent, topic_name
+from laconic.ros2.names import (
+    BEST_EFFORT,
+    LATCHED,
+    MOST_AT_ONCE,
+    OTHER_FIELDS,
+    USUAL,
+    Quality,
+    check_domain,
+    polled,
+    sent,
+    topic_name,
+)
 from laconic.ros2.rtps import Guid, Services
 
 HEADER_BYTES = 20  # of a request of rmw_cyclonedds: encapsulation, client and number
+MATCH_S = 2.0  # within which a writer matches: it is asked for the fields of its type meanwhile
+MOST_WRITERS = 10_000
+HANDLES = 2**64  # cyclonedds gives handles with a sign in one place and without in another
 MOST_WAIT = duration(microseconds=100)  # of a writer for a reader that does not keep up
 
 THIS_MACHINE = """<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="false"/>
@@ -49,13 +64,22 @@ def settings(is_local: bool) -> str:
     return ",".join([*given, *([THIS_MACHINE] if is_local else []), BY_NAMES])
 
 
+def is_alive(found: Any) -> bool:
+    """Whether an endpoint was there when it was read."""
+    return bool(found.sample_info.valid_data and found.sample_info.instance_state == InstanceState.Alive)
+
+
+def is_best_effort(qos: Qos) -> bool:
+    """Whether a writer offers less than a reader of ours asks for."""
+    return Policy.Reliability in qos and isinstance(qos[Policy.Reliability], type(Policy.Reliability.BestEffort))
+
+
 class Participant:
     """One DDS participant, the nodes in it, and their entry in the graph."""
 
     def __init__(self, domain: int, distribution: str = USUAL_DISTRIBUTION, *, is_local: bool = False,
                  announces: bool = True, middlewares: Sequence[str] = ("cyclonedds",)):
-        if not 0 <= domain <= MOST_DOMAIN:
-            raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
+        check_domain(domain)
         self.gid_bytes, self.domain = GID_BYTES[distribution], domain
         self.has_hashes, self.announces = distribution not in WITHOUT_HASHES, announces
         try:
@@ -68,6 +92,8 @@ class Participant:
         self.publisher, self.subscriber = Publisher(self.dds), Subscriber(self.dds)
         self.nodes: list[Node] = []
         self._topics: dict[tuple[str, str], Any] = {}
+        self._readers: dict[tuple[str, str], list[Any]] = {}  # by topic and type on the wire
+        self._unmatched: dict[int, tuple[Any, float]] = {}    # writers for them, and until when they may match
         self._entities: list[Any] = [self.publisher, self.subscriber]
         graph = "rmw_dds_common/msg/ParticipantEntitiesInfo"
         self._graph = self._endpoint(DataWriter, "ros_discovery_info", graph, LATCHED) if announces else None
@@ -101,6 +127,8 @@ class Participant:
         owner = self.publisher if kind is DataWriter else self.subscriber
         endpoint = kind(owner, self._topics[key], qos=self._qos(kind, message, quality, of_service))
         self._entities.append(endpoint)
+        if kind is DataReader:
+            self._readers.setdefault((wire_name, dds_name(message)), []).append(endpoint)
         return endpoint
 
     def _qos(self, kind: Any, message: str, quality: Quality, of_service: str) -> Qos:
@@ -152,15 +180,36 @@ class Participant:
         own = bytes(self.dds.guid.bytes)
         for info in polled(self._others):
             if bytes(info.gid.data)[:16] != own:
-                names = {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in info.node_entities_info_seq}
+                names = {topic_name("", each.node_namespace, each.node_name) for each in info.node_entities_info_seq}
                 found |= names & ours
         return found
 
-    def new_writers(self) -> Iterator[tuple[str, str]]:
-        """Topic and type, by their names on the wire, of writers that have come since the last call."""
+    def remarks(self) -> Iterator[str]:
+        """Nothing: peers come and go without a router."""
+        return iter(())
+
+    def new_writers(self) -> Iterator[tuple[str, str, str]]:
+        """As Middleware.new_writers; whether a writer matches is known some time after it has come."""
         for each in self._writers.take(N=MOST_AT_ONCE):
+            handle = each.sample_info.instance_handle % HANDLES
+            self._unmatched.pop(handle, None)
             if getattr(each.sample_info, "valid_data", False):
-                yield each.topic_name, each.type_name
+                yield each.topic_name, each.type_name, ""
+                if (each.topic_name, each.type_name) in self._readers and is_alive(each):
+                    self._unmatched[handle] = (each, time.monotonic() + MATCH_S)
+        matched = {key: {handle % HANDLES for reader in readers for handle in reader.get_matched_publications()}
+                   for key, readers in self._readers.items()} if self._unmatched else {}
+        for handle, (each, until_s) in list(self._unmatched.items()):
+            key = each.topic_name, each.type_name
+            if handle in matched[key] or time.monotonic() >= until_s:
+                del self._unmatched[handle]
+                if handle not in matched[key] and self._is_there(handle):
+                    yield *key, BEST_EFFORT if is_best_effort(each.qos) else OTHER_FIELDS
+
+    def _is_there(self, handle: int) -> bool:
+        """Whether a writer has not gone meanwhile."""
+        found = BuiltinDataReader(self.dds, BuiltinTopicDcpsPublication).take(N=MOST_WRITERS)
+        return any(each.sample_info.instance_handle % HANDLES == handle and is_alive(each) for each in found)
 
     def close(self) -> None:
         """Leaves the domain, so that peers know at once."""
@@ -195,7 +244,7 @@ class Node:
     @property
     def full_name(self) -> str:
         """With its namespace: /robot1/laconic."""
-        return f"{self.namespace.rstrip('/')}/{self.name}"
+        return topic_name("", self.namespace, self.name)
 
     def publisher(self, topic: str, message: str, quality: Quality = USUAL) -> Any:
         """A DataWriter."""

@@ -21,7 +21,7 @@ from zenoh.handlers import FifoChannel, RingChannel
 from laconic.errors import BadInput
 from laconic.ros2 import USUAL_DISTRIBUTION, WITHOUT_HASHES
 from laconic.ros2.messages import dds_name, message_class, type_hash
-from laconic.ros2.names import MOST_AT_ONCE, MOST_DOMAIN, USUAL, Quality, topic_name
+from laconic.ros2.names import MOST_AT_ONCE, OTHER_FIELDS, USUAL, Quality, check_domain, topic_name
 
 USUAL_ROUTER = "tcp/localhost:7447"  # where peers expect one
 SETTINGS = "ZENOH_SESSION_CONFIG_URI"
@@ -30,6 +30,8 @@ NODE, PUBLISHER, SUBSCRIPTION, SERVER = "NN", "MP", "MS", "SS"
 SPACE = "@ros2_lv"
 PARTS_OF_TOKEN = 13
 MOST_WAITING = 256
+RETRY = '{"period_init_ms": 1000, "period_max_ms": 1000, "period_increase_factor": 1}'
+LINK_S = 1.0  # within which a session finds a router that is there
 
 
 def mangled(name: str) -> str:
@@ -67,8 +69,9 @@ def config_of(router: str, listen: str, is_local: bool) -> Any:
     made = zenoh.Config()
     own = listen or ("tcp/127.0.0.1:0" if is_local else "tcp/[::]:0")
     for key, value in (("mode", '"peer"'), ("connect/endpoints", f'["{router}"]'), ("connect/timeout_ms", "-1"),
-                       ("connect/exit_on_failure", "false"), ("listen/endpoints", f'["{own}"]'),
-                       ("scouting/multicast/enabled", "false"), ("timestamping/enabled", "true")):
+                       ("connect/exit_on_failure", "false"), ("connect/retry", RETRY),
+                       ("listen/endpoints", f'["{own}"]'), ("scouting/multicast/enabled", "false"),
+                       ("timestamping/enabled", "true")):
         try:
             made.insert_json5(key, value)
         except Exception:
@@ -164,7 +167,7 @@ class ZenohNode:
     @property
     def full_name(self) -> str:
         """With its namespace: /robot1/laconic."""
-        return f"{self.namespace.rstrip('/')}/{self.name}"
+        return topic_name("", self.namespace, self.name)
 
     def _full(self, topic: str) -> str:
         return topic_name("", self.namespace, topic)
@@ -177,6 +180,7 @@ class ZenohNode:
     def subscription(self, topic: str, message: str, quality: Quality = USUAL) -> Reader:
         """What `polled` reads from."""
         self.context.token(self, SUBSCRIPTION, self._full(topic), message, quality)
+        self.context._hashes[dds_name(message)] = type_hash(message)
         return self.context.kept(Reader(self.context, self._full(topic), message, quality))
 
     def service(self, name: str, kind: str, answer: Callable[[Any], Any]) -> ZenohService:
@@ -191,8 +195,7 @@ class Context:
 
     def __init__(self, domain: int, distribution: str = USUAL_DISTRIBUTION, *, is_local: bool = False,
                  announces: bool = True, router: str = USUAL_ROUTER, listen: str = ""):
-        if not 0 <= domain <= MOST_DOMAIN:
-            raise BadInput(f"--domain: {domain} is not a domain; give 0 to {MOST_DOMAIN}")
+        check_domain(domain)
         self.domain, self.announces, self.has_hashes = domain, announces, distribution not in WITHOUT_HASHES
         zenoh.init_log_from_env_or("error")
         try:
@@ -202,9 +205,13 @@ class Context:
                            f"{USUAL_ROUTER}, or check {SETTINGS}") from None
         self.id, self._next = str(self.session.info.zid()), 0
         self.nodes, self._entities = list[ZenohNode](), list[Any]()
+        self._hashes: dict[str, str] = {}  # of what is heard, by the types' names in DDS
         self._graph: Any = self.session.liveliness().declare_subscriber(
             f"{SPACE}/{domain}/**", FifoChannel(4096), history=True)
-        self._namesakes, self._seen = set[str](), list[tuple[str, str]]()
+        self._namesakes, self._seen = set[str](), list[tuple[str, str, str]]()
+        self._where = os.environ.get(SETTINGS) or router
+        self._was_linked = self._is_missed = False
+        self._until_s = time.monotonic() + LINK_S
 
     def kept(self, entity: Any) -> Any:
         """The same, which lives as long as the session."""
@@ -257,7 +264,10 @@ class Context:
             if parts[5] == NODE:
                 self._namesakes.add(f"{parts[7].replace('%', '/').rstrip('/')}/{parts[8]}")
             elif parts[5] == PUBLISHER and len(parts) >= PARTS_OF_TOKEN:
-                self._seen.append((f"rt{parts[9].replace('%', '/')}", parts[10]))
+                topic, kind, known = f"rt{parts[9].replace('%', '/')}", parts[10], parts[11]
+                self._seen.append((topic, kind, ""))
+                if known != self._hash(self._hashes.get(kind, known)):
+                    self._seen.append((topic, kind, OTHER_FIELDS))
 
     def namesakes(self) -> set[str]:
         """Full names of nodes that another session has announced and that are ours, too."""
@@ -266,8 +276,19 @@ class Context:
         self._namesakes.clear()
         return found
 
-    def new_writers(self) -> Iterator[tuple[str, str]]:
-        """Topic and type, by their names in DDS, of publishers that have come since the last call."""
+    def remarks(self) -> Iterator[str]:
+        """A line each time that the first link to a router or peer comes, or the last one goes."""
+        is_linked = bool([*self.session.info.routers_zid(), *self.session.info.peers_zid()])
+        if is_linked and self._is_missed:
+            yield f"connected to Zenoh at {self._where}"
+        elif not is_linked and not self._is_missed and time.monotonic() >= self._until_s:
+            yield (f"the Zenoh router at {self._where} is gone; will connect when it comes again"
+                   if self._was_linked else f"no Zenoh router at {self._where} yet; will connect when it comes")
+            self._is_missed = True
+        self._was_linked, self._is_missed = self._was_linked or is_linked, self._is_missed and not is_linked
+
+    def new_writers(self) -> Iterator[tuple[str, str, str]]:
+        """As Middleware.new_writers."""
         self._look()
         found, self._seen = self._seen, []
         yield from found

@@ -109,7 +109,7 @@ PORTS = {"PWM": 19, "Encoder": 25, "AnalogInput": 7, "AnalogEncoder": 7, "Analog
 """Devices of WPILib by their numbers, and the largest number."""
 OUTPUTS = ("PWM", "CANMotor", "SimDevice")
 COUNTERS = ("Encoder", "DutyCycleEncoder", "AnalogEncoder", "AnalogInput", "CANEncoder", "CANDutyCycle", "SimDevice")
-GYROS = ("AnalogGyro", "ADXRS450", "CANGyro", "SimDevice")
+GYROS = ("ADXRS450", "AnalogGyro", "CANGyro", "SimDevice")
 DEVICE = re.compile(r"(?P<reversed>-?)(?P<kind>\w+)(\[(?P<number>\d+)\]|:(?P<name>[^/]+?)(/(?P<value>[^/]+))?)")
 
 

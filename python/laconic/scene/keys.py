@@ -390,7 +390,7 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("frc.steering", LIST_OF_TEXTS, "Output of each motor that steers, in the order of the wheels", (), "none"),
     Key("frc.steering_encoder", LIST_OF_TEXTS, "`DutyCycleEncoder[0]`, `AnalogEncoder[0]`, `Encoder[0]` …", (), "none"),
     Key("frc.steering_counts", A_NUMBER, "Counts of an `Encoder` in a turn of the module", 4096.0, rule=POSITIVE),
-    Key("frc.gyro", TEXT, "`AnalogGyro[0]`, `ADXRS450[0]`, `CANGyro:NAME` or `SimDevice:NAME/VALUE`", None, "none"),
+    Key("frc.gyro", TEXT, "`ADXRS450[0]`, `AnalogGyro[0]`, `CANGyro:NAME` or `SimDevice:NAME/VALUE`", None, "none"),
     Key("ardupilot.full_V", A_NUMBER, "Voltage of the motors at full throttle", None,
         "`vehicle.drive.supply_V`, else `rig.drives.supply_V`", POSITIVE),
     Key("ardupilot.full_speed_rad_per_s", A_NUMBER, "Instead: full throttle sets this speed, and a controller with the "

@@ -27,7 +27,7 @@ from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.standing import NO_LOAD
 from laconic.scene.table import Table
-from laconic.simulation.kept_rows import KeptRows, parts_of
+from laconic.simulation.kept_rows import KeptRows, parts_of, refusal_of_run
 from laconic.simulation.loads import Loads
 from laconic.simulation.slipping import USUAL as USUAL_SLIPPING
 from laconic.simulation.steering import Commands
@@ -144,13 +144,18 @@ def _farthest(differences: Any) -> float:
     return float(np.max(np.abs(differences), initial=0.0))
 
 
+def trailers_of(scene: Scene, vehicle: ArticulatedVehicle) -> list[tuple[int, str]]:
+    """Hinges whose bodies are drawn and that are no casters, by their numbers and names."""
+    follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
+    return [(at, hinge.name) for at, (hinge, link) in enumerate(zip(scene.hinges, vehicle.model.link, strict=False))
+            if hinge.form != "caster" and link.motion == follows]
+
+
 class Rows(KeptRows):
     """The outputs of a run on ideal ground."""
 
     def __init__(self, scene: Scene, vehicle: ArticulatedVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
-        follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
-        super().__init__(kept, [(at, hinge.name) for at, (hinge, link) in enumerate(zip(
-            scene.hinges, vehicle.model.link, strict=False)) if hinge.form != "caster" and link.motion == follows])
+        super().__init__(kept, trailers_of(scene, vehicle))
         self._inputs, self._loads = inputs, Loads(scene)
         names = {signal.partition("[")[0] for signal in kept}
         self._of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
@@ -283,7 +288,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
     parts = Parts(plant) if estimated else None
     run, last = HingedRun(plant, Rows(scene, vehicle, inputs, kept), commands, parts), None
     began = time.perf_counter()
-    watched = [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
+    watched = watched_hinges(scene)
     try:
         for first in range(0, inputs.steps, CHUNK):
             count = min(CHUNK, inputs.steps - first)
@@ -300,9 +305,8 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
         run.take(commands.row_at(inputs.steps, last), inputs.steps)
     except Refused as why:
         if not plant.steps:
-            raise why if str(scene.path) in why.message else scene.refusal_in_file(why, "at t = 0 s") from None
-        at_s = f"at t = {plant.steps * scene.run.step_s:g} s"
-        run.refused = why if str(scene.path) in why.message else scene.refusal_in_file(why, at_s)
+            raise refusal_of_run(scene, why, "at t = 0 s") from None
+        run.refused = refusal_of_run(scene, why, f"at t = {plant.steps * scene.run.step_s:g} s")
         if len(run.rows) <= -(-plant.steps // every):
             with suppress(Refused):  # of reactions at a posture that has none
                 run.take(commands.row_at(plant.steps, None), plant.steps)
@@ -324,6 +328,11 @@ def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hing
     finally:
         if run.parts:
             run.parts.follow(table[: plant.steps - before_all])
+
+
+def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
+    """Hinges that may come to a stop by themselves, with their numbers."""
+    return [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
 
 
 def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from laconic.core.spelling import wrapped
+from laconic.errors import Refused
+from laconic.scene import Scene
 
 FOLDED_RAD = math.pi / 2.0
 
@@ -45,6 +47,11 @@ class Folds:
     def found(self) -> tuple[Folded, ...]:
         """Those that folded."""
         return tuple(self._seen.values())
+
+
+def refusal_of_run(scene: Scene, why: Refused, when: str = "") -> Refused:
+    """A refusal with the scene's file in front, which some have already."""
+    return why if str(scene.path) in why.message else scene.refusal_in_file(why, when)
 
 
 class KeptRows:

@@ -22,7 +22,7 @@ from laconic.errors import Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, BOOK, CURVATURE, OF_SUPPLY, TWIST
 from laconic.scene.inputs import InputsOnGrid
-from laconic.simulation.kept_rows import KeptRows, parts_of
+from laconic.simulation.kept_rows import KeptRows, parts_of, refusal_of_run
 from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
@@ -215,9 +215,7 @@ def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) 
             if commands.refused:
                 raise commands.refused
     except Refused as why:
-        known = str(scene.path) in why.message
-        at_s = f"at t = {plant.steps * scene.run.step_s:g} s"
-        refused = why if known else scene.refusal_in_file(why, at_s)
+        refused = refusal_of_run(scene, why, f"at t = {plant.steps * scene.run.step_s:g} s")
         if not plant.steps:
             raise refused from None
     if refused is None or len(rows) <= -(-plant.steps // every):

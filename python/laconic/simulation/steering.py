@@ -89,7 +89,7 @@ class Commands:
         self._steering = self._steering_of() if self.vehicle.is_coordinated else None
         self._ends = 0  # the step that a limit refuses
         self._twist: np.ndarray | None = None
-        self._stuck: tuple[np.ndarray, Hinge, str, float, float] | None = None  # the target of a hinge at its stop
+        self._stuck: tuple[list[np.ndarray], Hinge, str, float, float] | None = None  # target and twist at a stop
 
     def _steering_of(self) -> _Steering:
         return _Steering(self.scene, self._numbers)
@@ -162,7 +162,7 @@ class Commands:
         column = self._numbers.get(f"{ANGLE}[{hinge.name}]")
         angle, most = self._angle[hinge.name], hinge.rate_limit_rad_per_s
         rates = rows[:, :, slot] if column is None else _held_rates(angle, given[:, 1, column], h)
-        ends = angle + 0.5 * h * np.cumsum(rates.sum(axis=1))
+        ends = np.cumsum([angle, *(0.5 * h * rates.sum(axis=1))])[1:] if column is None else given[:, 1, column]
         if len(ends) and np.abs(rates).max() <= most and hinge.low_rad <= ends.min() and ends.max() <= hinge.high_rad:
             rows[:, :, slot], self._angle[hinge.name] = rates, float(ends[-1])  # no limit holds it back
             return
@@ -176,9 +176,10 @@ class Commands:
                     self._limit(hinge, "angle", first + k, target, within)
                 wanted = np.full(2, (within - angle) / h)
             rates = np.clip(wanted, -most, most)
+            is_reached = column is not None and np.array_equal(rates, wanted)
             if np.any(np.abs(wanted) > most * (1.0 + ROUNDING)):
                 self._limit(hinge, "rate", first + k, float(np.max(np.abs(wanted))), most)
-            end = angle + 0.5 * h * float(rates.sum())
+            end = within if is_reached else angle + 0.5 * h * float(rates.sum())
             stop = min(max(end, hinge.low_rad), hinge.high_rad)
             if abs(stop - end) > OF_ANGLE:
                 self._limit(hinge, "angle", first + k, end, stop)
@@ -226,7 +227,7 @@ class Commands:
         way = np.array([self._twist, *wanted])
         turns = steering.turns(way[:-1], way[1:])
         now = np.array([self._angle[hinge.name] for hinge in steering.hinges])
-        angles = now + np.cumsum(turns, axis=0)
+        angles = np.cumsum(np.vstack([now, turns]), axis=0)[1:]
         if (np.abs(turns) > h * steering.rates).any() or (angles > steering.highs).any() or \
                 (angles < steering.lows).any():
             return False
@@ -260,7 +261,7 @@ class Commands:
         """As far from the present twist to the target as limits allow."""
         assert self._twist is not None
         now = self._twist
-        if self._stuck is not None and np.array_equal(target, self._stuck[0]):  # at a stop, as in the step before
+        if self._stuck is not None and np.array_equal([target, now], self._stuck[0]):  # at a stop, as a step before
             self._limit(*self._stuck[1:3], step, *self._stuck[3:])
             return now
         broken, low, high = self._broken(steering, now, target, h), 0.0, 1.0
@@ -273,7 +274,9 @@ class Commands:
         hinge, what, _, limit = broken  # the one that holds it here
         asked = self._asked(steering, hinge, what, now, target, h)
         self._limit(hinge, what, step, asked, limit)
-        self._stuck = (target, hinge, what, asked, limit) if what == "angle" and low < STUCK else None
+        if what == "angle" and low < STUCK:
+            self._stuck = ([target, now], hinge, what, asked, limit)
+            return now
         return steering.unit(now + low * (target - now))
 
     def _asked(self, steering: _Steering, hinge: Hinge, what: str, now: np.ndarray, target: np.ndarray, h: float
@@ -347,7 +350,7 @@ class _Steering:
             if np.any(np.abs(angles) >= math.pi / 2):
                 raise BadInput(f"{self.scene.path}: input: {ANGLE} reaches {float(np.max(np.abs(angles))):g} rad; give "
                                f"less than a right angle, or {TWIST}")
-            twists[..., 2] = np.tan(angles) / self._base_m
+            twists[..., 2] = tangent_of(angles) / self._base_m
         twists[..., 1] = -self._axle_x_m * twists[..., 2]
         return twists
 
@@ -360,16 +363,52 @@ class _Steering:
         ahead, aside, yaw = (scaled * (1.0, 1.0, self._size_m)).tolist()
         return np.asarray(scaled / math.sqrt(ahead * ahead + aside * aside + yaw * yaw))  # the same bits everywhere
 
-    def _directions(self, twist: np.ndarray) -> np.ndarray:
-        """Velocity at each hinge as a complex number, for one twist or many."""
+    def _directions(self, twist: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Velocity at each hinge, ahead and to the left, for one twist or many."""
         x, y = self.places.T
         ahead, aside, yaw = (twist[..., [i]] for i in range(3))
-        return np.asarray((ahead - yaw * y) + 1j * (aside + yaw * x))
+        return ahead - yaw * y, aside + yaw * x
 
     def angles(self, twist: np.ndarray) -> Sequence[float]:
-        """Angle of each hinge in (−π, π]."""
-        return [float(angle) for angle in np.angle(self._directions(twist))]
+        """Angle of each hinge in [−π, π]."""
+        return [float(angle) for angle in angle_of(*self._directions(twist))]
 
     def turns(self, now: np.ndarray, then: np.ndarray) -> np.ndarray:
         """How far each hinge turns from one twist to another."""
-        return np.asarray(np.angle(self._directions(then) * np.conj(self._directions(now))))
+        (x0, y0), (x, y) = self._directions(now), self._directions(then)
+        return angle_of(x * x0 + y * y0, y * x0 - x * y0)
+
+
+def tangent_of(angles: np.ndarray) -> np.ndarray:
+    """Tangents of angles below a right angle, by operations that every machine rounds alike, as the npm package does:
+    sine over cosine of an eighth by their series, doubled three times."""
+    eighths = angles / 8.0
+    t = eighths * _series(eighths, 13) / _series(eighths, 12)
+    for _ in range(3):
+        t = 2.0 * t / (1.0 - t * t)
+    return t
+
+
+def _series(x: np.ndarray, last: int) -> np.ndarray:
+    """Of sin(x)/x by odd powers up to a last one, of cos(x) by even ones."""
+    found, square = np.ones_like(x), x * x
+    for k in range(last, 1, -2):
+        found = 1.0 - square * found / (k * (k - 1.0))
+    return found
+
+
+def angle_of(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Directions of vectors, by operations that every machine rounds alike, as the npm package does.
+
+    The tangent of the half angle is y/(r + x) in the right half plane; three more halves leave a short series.
+    """
+    beside = np.abs(x)
+    whole = np.sqrt(x * x + y * y) + beside
+    t = np.divide(y, whole, out=np.zeros_like(whole), where=whole > 0.0)
+    for _ in range(3):
+        t = t / (1.0 + np.sqrt(1.0 + t * t))
+    square, series = t * t, np.zeros_like(t)
+    for k in range(15, 0, -2):
+        series = 1.0 / k - square * series
+    angle = 16.0 * (t * series)
+    return np.where(x < 0.0, np.where(y < 0.0, -math.pi, math.pi) - angle, angle)

@@ -7,11 +7,47 @@ const AHEAD = [1, 0, 0];
 const ROUNDING = 1e-9; // of a limit of rate
 const OF_ANGLE = 1e-12; // rad
 const HALVINGS = 50; // of the way to a twist beyond a limit
+const STUCK = 1e-10; // of that way: the hinge is at its stop
 const LEAST_SIZE_M = 1e-3;
 const ON_THE_AXLE = 1e-6; // of the vehicle's size
 
 function within(/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ high) {
   return Math.min(Math.max(value, low), high);
+}
+
+/**
+ * Direction of a vector, by operations that every machine rounds alike, as the command does. The tangent of the half
+ * angle is y/(r + x) in the right half plane; three more halves leave a short series.
+ * @param {number} x @param {number} y
+ */
+export function angleOf(x, y) {
+  const whole = Math.sqrt(x * x + y * y) + Math.abs(x);
+  let t = whole > 0 ? y / whole : 0;
+  for (let k = 0; k < 3; k++) t = t / (1 + Math.sqrt(1 + t * t));
+  const square = t * t;
+  let sum = 0;
+  for (let k = 15; k > 0; k -= 2) sum = 1 / k - square * sum;
+  const angle = 16 * (t * sum);
+  return x < 0 ? (y < 0 ? -Math.PI : Math.PI) - angle : angle;
+}
+
+/**
+ * The tangent of an angle below a right angle, in the same way: sine over cosine of an eighth by their series, doubled
+ * three times.
+ * @param {number} angle
+ */
+export function tangentOf(angle) {
+  const eighth = angle / 8;
+  let t = (eighth * series(eighth, 13)) / series(eighth, 12);
+  for (let k = 0; k < 3; k++) t = (2 * t) / (1 - t * t);
+  return t;
+}
+
+/** Of sin(x)/x by odd powers up to a last one, of cos(x) by even ones. @param {number} x @param {number} last */
+function series(x, last) {
+  let found = 1;
+  for (let k = last; k > 1; k -= 2) found = 1 - (x * x * found) / (k * (k - 1));
+  return found;
 }
 
 function isZero(/** @type {number[]} */ twist) {
@@ -46,6 +82,8 @@ export class Commands {
     this.twist = AHEAD;
     /** @type {Map<string, {hinge: string, limit: string, first_s: number, steps: number}>} */
     this.limited = new Map();
+    /** @type {{target: number[], now: number[], hinge: Hinge, asked: number, limit: number} | undefined} */
+    this.stuck = undefined;
   }
 
   /** The commands of an input, checked before; rates and angles by the names of hinges. */
@@ -75,7 +113,7 @@ export class Commands {
       );
     if (!(Math.abs(angle) < Math.PI / 2))
       throw new Refused("steering_angle_rad", `is ${angle}; give less than a right angle`, "out of range", angle);
-    return this.ofCurvature(Math.tan(angle) / base);
+    return this.ofCurvature(tangentOf(angle) / base);
   }
 
   /** At the start the wheels point as commanded, or as near to it from straight ahead as their stops allow. */
@@ -210,6 +248,11 @@ export class Commands {
   towards(/** @type {number[]} */ target, /** @type {number} */ time_s, /** @type {number} */ h) {
     const now = this.twist,
       part = (/** @type {number} */ share) => now.map((each, k) => each + share * (target[k] - each));
+    if (this.stuck && same(this.stuck.target, target) && same(this.stuck.now, now)) {
+      const { hinge, asked, limit } = this.stuck; // at a stop, as a step before
+      this.limit(hinge, "angle", time_s, asked, limit);
+      return now;
+    }
     let broken = this.broken(target, h);
     if (!broken) return target;
     let low = 0,
@@ -222,9 +265,12 @@ export class Commands {
       else low = middle;
     }
     const { hinge, what, limit } = broken,
-      turn = this.turns(now, target)[this.coordinated.indexOf(hinge)];
-    this.limit(hinge, what, time_s, what === "rate" ? Math.abs(turn) / h : this.angle(hinge) + turn, limit);
-    return this.unit(part(low));
+      turn = this.turns(now, target)[this.coordinated.indexOf(hinge)],
+      asked = what === "rate" ? Math.abs(turn) / h : this.angle(hinge) + turn;
+    this.limit(hinge, what, time_s, asked, limit);
+    if (what !== "angle" || low >= STUCK) return this.unit(part(low));
+    this.stuck = { target, now, hinge, asked, limit };
+    return now;
   }
 
   /** The first limit that a step from the present twist to another breaks. */
@@ -260,7 +306,7 @@ export class Commands {
     const before = this.directions(now);
     return this.directions(then).map(([x, y], k) => {
       const [x0, y0] = before[k];
-      return Math.atan2(y * x0 - x * y0, x * x0 + y * y0);
+      return angleOf(x * x0 + y * y0, y * x0 - x * y0);
     });
   }
 
@@ -268,10 +314,14 @@ export class Commands {
   takeAngles() {
     this.directions(this.twist).forEach(([x, y], k) => {
       const hinge = this.coordinated[k],
-        angle = Math.atan2(y, x);
+        angle = angleOf(x, y);
       this.angles.set(hinge.name, angle + 2 * Math.PI * Math.round((hinge.angle - angle) / (2 * Math.PI)));
     });
   }
+}
+
+function same(/** @type {number[]} */ a, /** @type {number[]} */ b) {
+  return a.every((each, k) => each === b[k]);
 }
 
 export function isStopped(/** @type {Hinge} */ { low, high }) {

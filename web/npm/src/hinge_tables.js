@@ -10,6 +10,7 @@ import { inPlace, inRad } from "./scene.js";
  * @typedef {Record<string, any>} Body the numbers of a body, its name, its parent's name and its hinge's kind
  * @typedef {{table: Record<string, any>, body: string, place: string}} Wheel a wheel without what its body is
  * @typedef {{body: Body, hinge: Hinge, wheels: Wheel[]}} Part what one table contributes
+ * @typedef {{bodies: Body[], hinges: Hinge[], wheels: Wheel[]}} Hung all of a vehicle, parents first
  */
 
 export const CARRIAGE = "carriage";
@@ -29,7 +30,7 @@ function isCommanded(/** @type {string} */ kind) {
   return COMMANDED.includes(kind);
 }
 
-/** Every body that a vehicle has, parents first, and all its wheels with the names of their bodies. */
+/** Every body that a vehicle has, and all its wheels with the names of their bodies. @returns {Hung} */
 export function readHinges(/** @type {any} */ vehicle) {
   const lists = Object.fromEntries(["wheel", "body", "caster", "trailer"].map((form) => [form, listOf(vehicle, form)]));
   /** @type {Wheel[]} */
@@ -227,7 +228,8 @@ function motorOf(
   };
 }
 
-function withMotor(/** @type {Body} */ body, /** @type {Record<string, number>} */ { inertia, ...motor }) {
+/** @param {Body} body @param {Record<string, number>} own @returns {Body} */
+function withMotor(body, { inertia, ...motor }) {
   return { ...body, ...motor, yaw_inertia_kgm2: body.yaw_inertia_kgm2 + inertia };
 }
 

@@ -17,7 +17,7 @@ const REACTIONS = ["wheel_torque_Nm", "along_N", "lateral_N", "brake_Nm", "hinge
 
 /** Sets all numbers of a scene with hinges in a robot. */
 class HingedSetter extends SceneSetter {
-  /** @param {any} scene @param {ReturnType<typeof readHinges>} found */
+  /** @param {any} scene @param {import("./hinge_tables.js").Hung} found */
   setHinged(scene, found) {
     checkIdeal(scene);
     const { body, caster, trailer, ...vehicle } = scene.vehicle;
@@ -87,7 +87,7 @@ export class HingedRobot extends Handle {
     this.take(() => this.begin(scene, found, method));
   }
 
-  /** @param {any} scene @param {ReturnType<typeof readHinges>} found @param {string} method */
+  /** @param {any} scene @param {import("./hinge_tables.js").Hung} found @param {string} method */
   begin(scene, found, method) {
     new HingedSetter(this.module, this.pointer).setHinged(scene, found);
     askNumber("run.step_s", this.step_s);

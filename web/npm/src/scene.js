@@ -13,9 +13,9 @@ import {
   unknownKey,
 } from "./checks.js";
 import { Refused } from "./refused.js";
+import { OF_TOOLS } from "./tool_tables.js";
 
 const SCENE = ["name", "source", "vehicle", "ground", "initial", "input", "run", "outputs", "sensors"];
-const OF_TOOLS = ["speed_controller", "base", "rig"];
 const TEXTS = ["name", "source"];
 const UNREAD_TABLES = ["outputs", "sensors", ...OF_TOOLS]; // which other tools read
 const INITIAL = ["nu_rad_per_s", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];

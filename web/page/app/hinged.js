@@ -5,6 +5,7 @@ import { hingesIn, inPlace } from "laconic/scene";
 
 const FOLDED_RAD = Math.PI / 2;
 const TRAIL_POINTS = 3000;
+export const DRAWBAR = 0.4; // of a trailer's length, as it is drawn
 
 /**
  * @typedef {{name: string, form: string, parent: number, hinge: any, at: number[], wheels: any[],
@@ -132,7 +133,11 @@ function cornersOf(/** @type {Part} */ part, /** @type {Part[]} */ parts, /** @t
       const turns = form === "wheel" || form === "caster" || wheels.length === 1;
       return [at[0], at[1], turns ? 0.9 * (wheels[0]?.radius_m ?? vehicle.wheel_radius_m) : 0.15 * track];
     }),
-    ...(part.parent >= 0 ? [[0, 0, 0.15 * track]] : []),
+    ...(part.form === "trailer"
+      ? [1, -1].map((side) => [DRAWBAR * middle(part.wheels)[0], side * track, 0.1 * track])
+      : part.parent >= 0
+        ? [[0, 0, 0.15 * track]]
+        : []),
   ];
 }
 
@@ -175,7 +180,7 @@ export class Trails {
   }
 }
 
-function middle(/** @type {any[]} */ wheels) {
+export function middle(/** @type {any[]} */ wheels) {
   const mean = (/** @type {string} */ key) => wheels.reduce((sum, wheel) => sum + wheel[key], 0) / wheels.length;
   return [mean("x_m"), mean("y_m")];
 }
@@ -186,8 +191,8 @@ export function steeringBase(/** @type {Layout} */ { parts, axle }) {
   return steered.reduce((sum, { at }) => sum + at[0], 0) / steered.length - axle.x_m;
 }
 
-/** Changes in which the one angle of coordinated wheels is the curvature that it means: engines of JavaScript and
- * libraries of C round a tangent each in their own way, so the command repeats a curvature alone to the same bits. */
+/** Changes in which the one angle of coordinated wheels is the curvature that it means, as sliders give it: a scene
+ * steers by one of them alone. */
 export function byCurvature(/** @type {any} */ scene, /** @type {import("./drive.js").Change[]} */ changes) {
   if (!hasHinges(scene) || !changes.some(({ signals }) => "steering_angle_rad" in signals)) return changes;
   const base = steeringBase(layoutOf(scene.vehicle));

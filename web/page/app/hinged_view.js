@@ -1,5 +1,6 @@
 // How a robot with hinges looks from above, and what the panel tells of its hinges.
 import { drawNose, drawWheel, hull, ring } from "./drawing.js";
+import { DRAWBAR, middle } from "./hinged.js";
 import { byId, element, fixed, shown } from "./texts.js";
 
 const DEGREES_PER_RAD = 180 / Math.PI;
@@ -10,9 +11,9 @@ const HALF_TURN = Math.PI;
 /** The carriage in its own frame, one unit a metre. */
 export function drawCarriage(/** @type {any} */ pen, /** @type {any} */ layout, /** @type {any} */ style) {
   drawOutline(pen, layout.parts[0].corners, style);
-  const [x, , r] = layout.parts[0].corners.reduce((most, each) => (each[0] > most[0] ? each : most), [0, 0, 0]);
+  const front = Math.max(...layout.parts[0].corners.map((/** @type {number[]} */ [x, , r]) => x + 0.3 * r));
   pen.save();
-  pen.translate(x - 0.5 * layout.size + 0.3 * r, 0);
+  pen.translate(front - 0.5 * layout.size, 0);
   drawNose(pen, layout.size, style);
   pen.restore();
 }
@@ -64,14 +65,13 @@ function inFrame(
   pen.restore();
 }
 
-/** A trailer or another frame, with its drawbar; twin wheels on a swivel have none. */
+/** A frame; a trailer has a drawbar. */
 function drawTowed(/** @type {any} */ pen, /** @type {Part} */ part, /** @type {any} */ style) {
-  const around = part.corners.filter(([x, y, r]) => Math.hypot(x, y) > r);
-  const behind = Math.min(0, ...around.map(([x, , r]) => x + r));
-  drawOutline(pen, around.length > 2 ? around : part.corners, style);
+  drawOutline(pen, part.corners, style);
+  if (part.form !== "trailer") return;
   pen.beginPath();
   pen.moveTo(0, 0);
-  pen.lineTo(0.6 * behind, 0);
+  pen.lineTo(DRAWBAR * middle(part.wheels)[0], 0);
   pen.stroke();
 }
 

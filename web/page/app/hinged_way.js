@@ -34,6 +34,9 @@ export class HingedWay {
     this.isSteered = !this.isSwerve && Boolean(this.steered || this.coordinated.length);
     this.hasMotors = this.wheels.some((wheel) => this.idle(wheel) > 0);
     this.twist = [1, 0, 0];
+    /** @type {number[]} */
+    this.most = [1, 1, 1];
+    this.sign = 1;
     this.fit();
     this.knobs = [...this.wheelKnobs(), ...this.hingeKnobs()];
   }

@@ -60,10 +60,11 @@ class Page {
     showStep(step_s);
     this.run?.free();
     this.run = undefined;
+    this.ended = false;
     this.editor.chosen = 0;
     this.fit();
     this.rebuild();
-    this.controls.choose(this.sceneDrive.isEmpty && !this.scene.initial ? "velocity" : "scene", false);
+    this.controls.choose(this.sceneDrive?.isEmpty && !this.scene.initial ? "velocity" : "scene", false);
     byId("source").textContent = byId("source").title = this.scene.source;
     if (id === "own") this.view("draw");
     else if (this.isDrawing && hasHinges(this.scene)) this.view("drive");

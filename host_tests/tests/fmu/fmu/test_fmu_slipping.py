@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import copy
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +17,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_importer import DISCARD, ERROR, OK, Importer
 from fmu_saved_states import SUFFIX, deserialize, save, serialize
+from test_fmu_articulated import in_ecos, in_libcosim
 
 from laconic import build_scene, simulate
 from laconic.base.paths import built
@@ -20,6 +25,7 @@ from laconic.cli.main import run
 from laconic.core import load
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
+from laconic.fmu.hinges import left_out
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import output_signals_of
 from laconic.scene.scene_tables import scene_tables
@@ -66,7 +72,8 @@ def rich() -> Scene:
               "yaw_inertia_kgm2": 4e-4, "name": "rear", "stop_low_rad": -0.021, "stop_high_rad": 0.021}
     vehicle = {"mass_kg": 20.0, "yaw_inertia_kgm2": 0.8, "com_x_m": 0.15, "com_z_m": 0.1, "wheel_radius_m": 0.08,
                "wheel_inertia_kgm2": 0.01, "wheel": wheels, "caster": [caster],
-               "motor": MOTOR, "drive": {"supply_V": 6.0, "supply_resistance_ohm": 0.05}}
+               "support": [{"x_m": -0.3, "y_m": 0.0}], "motor": MOTOR,
+               "drive": {"supply_V": 6.0, "supply_resistance_ohm": 0.05}}
     given = {"voltage_V[1]": 9.0, "voltage_V[2]": 5.0, "steering_angle_rad[front]": 0.3, "axle_torque_Nm[1]": 0.2,
              "steering_angle_rad[motor]": -0.2, "body_force_N[2]": 30.0}
     inputs = [{"signal": name, "kind": "steps", "t_s": [0.0, 0.05], "value": [value, -value]}
@@ -161,7 +168,35 @@ def test_fmpy_validates_it_without_a_message_and_it_offers_co_simulation_alone(v
     assert description.modelExchange is None and description.coSimulation.modelIdentifier == "LaconicSlipping"
     names = {variable.name.partition("[")[0] for variable in description.modelVariables}
     assert {"contact_state", "slip_across_m_per_s", "wheel_load_N", "servo_gain_Nm_per_rad", "slip_loss_J"} <= names
-    assert names.isdisjoint({"steering_twist", "no_slip_margin_N", "carriage_zeta", "support_load_N"})
+    assert names.isdisjoint({"steering_twist", "no_slip_margin_N", "carriage_zeta"})
+
+
+@ONE_IN_ORDINARY_RUNS
+def test_the_manipulation_toolbox_has_no_finding_and_terminals_name_variables(variant: str, tmp_path: Path) -> None:
+    fmu = made(rich(), variant, tmp_path)
+    done = subprocess.run([str(Path(sys.executable).parent / "fmutool"), "-input", str(fmu), "-check"],
+                          capture_output=True, text=True, check=True)
+    lines = (done.stdout + done.stderr).splitlines()
+    assert any("compliant with FMI" in line for line in lines), lines
+    assert not [line for line in lines if line.startswith(("WARNING", "ERROR", "CRITICAL"))]
+    with zipfile.ZipFile(fmu) as archive:
+        if "model.png" in archive.namelist():
+            return
+        terminals = ET.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    variables = {v.name for v in fmpy.read_model_description(str(fmu)).modelVariables}
+    members = {member.get("variableName") for member in terminals.iter("TerminalMemberVariable")}
+    assert members and members <= variables
+
+
+@BOTH
+def test_the_fmu_of_ideal_ground_has_nothing_of_it(version: int) -> None:
+    with zipfile.ZipFile(built(f"fmu/LaconicArticulated_fmi{version}.fmu")) as archive:
+        assert [name for name in archive.namelist() if "tree_" in name or "slipping" in name] == []
+        library = next(name for name in archive.namelist() if name.endswith("linux/LaconicArticulated.so") or
+                       name.endswith("linux64/LaconicArticulated.so"))
+        for part in (library, "modelDescription.xml"):
+            for word in (b"slip_along_m_per_s", b"scrub_loss_J", b"LoopGain"):
+                assert word not in archive.read(part), (part, word)
 
 
 @BOTH
@@ -312,6 +347,29 @@ def test_the_command_writes_it_and_states_what_is_left_out(tmp_path: Path, capsy
     assert "the FMU has no inputs steering_twist[1], steering_twist[2], steering_twist[3]" in printed
     assert "steering_rate_rad_per_s of prescribed hinges" in printed
     assert fmpy.read_model_description(str(out)).coSimulation.modelIdentifier == "LaconicSlipping"
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("package", "run_in"), [("ecospy", in_ecos), ("libcosimpy", in_libcosim)])
+def test_it_runs_in_other_importers(package: str, run_in: Any, tmp_path: Path) -> None:
+    pytest.importorskip(package)
+    fmu = make_fmu(rich(), tmp_path / "scene.fmu", version=2, enumerations=False)
+    given = {"voltage_V[1]": 6.0, "voltage_V[2]": 2.0, "steering_angle_rad[2]": 0.3}
+    names = ["x_m", "y_m", "heading_rad", "hinge_rad[2]", "slip_loss_J", "wheel_load_N[1]"]
+    with Importer(fmu) as importer:
+        importer.enter_initialization()
+        importer.must("SetReal", importer.references(*given), len(given), list(given.values()))
+        importer.must("ExitInitializationMode")
+        for k in range(50):
+            assert importer.step(k * 0.01, 0.01) == OK
+        expected = [importer.get(name)[0] for name in names]
+    assert run_in(fmu, given, names, 50, 0.01) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+def test_only_limits_that_the_fmu_lacks_are_stated() -> None:
+    assert left_out(on_friction("tricycle_agv")) == ""  # its motor's stops are parameters
+    assert "those of front are left out" in left_out(on_friction("tugger_train"))  # its front wheel is prescribed
+    assert left_out(rich()) == ""
 
 
 @pytest.mark.parametrize("option", ["derivatives", "estimate"])

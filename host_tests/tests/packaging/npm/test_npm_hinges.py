@@ -17,6 +17,7 @@ from laconic import Scene, build_scene, read_scene, simulate
 from laconic.base.paths import scene_path
 from laconic.core import load
 from laconic.core.articulated import method_names
+from laconic.simulation.steering import angle_of, tangent_of
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None or not FOLDER.is_dir(),
                                 reason="needs node, and clang with wasm-ld for the package")
@@ -165,43 +166,74 @@ def test_every_form_of_a_body_is_understood_as_the_command_understands_it(tmp_pa
     inputs = {name: inputs_of(scenes[name], each) for name, (_, each) in given.items()}
     found = ran([{"scene": given[name][0], "inputs": inputs[name], "steps": 100} for name in given], tmp_path)
     for (name, scene), each in zip(scenes.items(), found, strict=True):
-        run = scene_with_inputs(given[name][0], inputs[name][0], 1.0)
+        run = scene_with_inputs(given[name][0], inputs[name], 1.0)
         last = {key: column[-1] for key, column in simulate(run).columns.items()}
         x, y, heading, energy = each["at"][0][:4]
         assert [last["x_m"], last["y_m"], last["heading_rad"], last["energy_J"]] == [x, y, heading, energy], name
         assert each["bodies"] == [hinge.name for hinge in scene.hinges]
 
 
-def scene_with_inputs(tables: dict[str, Any], given: dict[str, Any], duration_s: float) -> Scene:
-    """The scene with inputs that are held from the start."""
-    held: dict[str, float] = {}
-    for name, value in given.items():
-        if isinstance(value, dict):
-            held |= {f"{name}[{hinge}]": each for hinge, each in value.items()}
-        elif isinstance(value, list):
-            held |= {f"{name}[{k}]": each for k, each in enumerate(value, 1)}
-        else:
-            held[name] = value
-    inputs = [{"signal": signal, "kind": "steps", "t_s": [0.0], "value": [value]} for signal, value in held.items()
-              if value]
+def scene_with_inputs(tables: dict[str, Any], given: list[dict[str, Any]], each_s: float) -> Scene:
+    """The scene with inputs that are held one after the other."""
+    held: dict[str, list[float]] = {}
+    for at, (name, value) in ((at, pair) for at, inputs in enumerate(given) for pair in inputs.items()):
+        listed = dict(enumerate(value, 1)) if isinstance(value, list) else value
+        for item, number in (listed if isinstance(listed, dict) else {"": listed}).items():
+            held.setdefault(f"{name}[{item}]" if item else name, [0.0] * len(given))[at] = number
+    inputs = [{"signal": signal, "kind": "steps", "t_s": [each_s * at for at in range(len(given))], "value": values}
+              for signal, values in held.items() if any(values)]
     rest = {key: value for key, value in tables.items() if key not in ("input", "outputs", "run")}
-    return build_scene(rest | {"input": inputs, "run": {"duration_s": duration_s, "step_s": 0.01}})
+    return build_scene(rest | {"input": inputs, "run": {"duration_s": each_s * len(given), "step_s": 0.01}})
 
 
-LIMITED: dict[str, dict[str, Any]] = {
-    "f1tenth": {"steering_angle_rad": 0.5}, "tugger_train": {"steering_angle_rad": {"front": 1.6}},
-    "wheel_loader": {"steering_angle_rad": {"rear": -0.9}}}
+LIMITED: dict[str, list[dict[str, Any]]] = {
+    "f1tenth": [{"steering_angle_rad": 0.5}, {"steering_angle_rad": 0.0}, {"steering_angle_rad": 0.5}],
+    "frc_swerve_mk4i": [{"steering_twist": [1, 0.2, 0]}, {"steering_twist": [-0.1, 1, 0.8]}],
+    "pr2_base": [{"steering_twist": [1, 0.4, 0]}, {"steering_twist": [-1, 2, 5]}],
+    "tugger_train": [{"steering_angle_rad": {"front": 1.6}}, {"steering_angle_rad": {"front": -0.3}}],
+    "wheel_loader": [{"steering_angle_rad": {"rear": -0.9}}, {"steering_angle_rad": {"rear": 0.2}}]}
+
+
+def without_rates(tables: dict[str, Any]) -> dict[str, Any]:
+    """A car whose wheels have stops, but no limit of rate."""
+    wheels = [{key: value for key, value in wheel.items() if key != "rate_limit_rad_per_s"}
+              for wheel in tables["vehicle"]["wheel"]]
+    return tables | {"vehicle": tables["vehicle"] | {"wheel": wheels}, "input": []}
 
 
 def test_limits_hold_commands_back_as_in_a_run_of_the_command_and_are_reported(tmp_path):
-    runs = [{"scene": plain(name), "inputs": inputs_of(read_scene(name), [each]), "steps": 300}
-            for name, each in LIMITED.items()]
-    for name, run, found in zip(LIMITED, runs, ran(runs, tmp_path), strict=True):
-        result = simulate(scene_with_inputs(run["scene"], run["inputs"][0], 3.0))
+    stops = [{"steering_curvature_per_m": value} for value in (2.0, 0.0, 2.0)]
+    tables = {name: plain(name) for name in LIMITED} | {"stops alone": without_rates(plain("f1tenth"))}
+    commands = {**LIMITED, "stops alone": stops}
+    runs = [{"scene": tables[name], "inputs": inputs_of(build_scene(tables[name]), commands[name]), "steps": 100}
+            for name in tables]
+    for name, run, found in zip(tables, runs, ran(runs, tmp_path), strict=True):
+        result = simulate(scene_with_inputs(run["scene"], run["inputs"], 1.0))
         last = {key: column[-1] for key, column in result.columns.items()}
-        assert found["at"][0][:3] == pytest.approx([last["x_m"], last["y_m"], last["heading_rad"]], rel=1e-9), name
+        assert found["at"][0][:3] == [last["x_m"], last["y_m"], last["heading_rad"]], name  # bit by bit
+        assert found["limited"], name
         assert {(each["hinge"], each["limit"]): each["steps"] for each in found["limited"]} == {
             (each.hinge, each.limit): each.steps for each in result.limited}, name
+
+
+ANGLES = """
+import { readFileSync } from "node:fs";
+import { angleOf, tangentOf } from "./node_modules/laconic-robots/src/hinge_commands.js";
+const { vectors, angles } = JSON.parse(readFileSync("given.json", "utf8"));
+console.log(JSON.stringify([vectors.map(([x, y]) => angleOf(x, y)), angles.map(tangentOf)]));
+"""
+
+
+def test_directions_and_tangents_have_the_bits_of_the_command_and_are_right(tmp_path):
+    random = np.random.default_rng(3)
+    vectors = np.concatenate([random.normal(size=(500, 2)), [[1, 0], [-1, 0], [0, 1], [0, -2], [-1, -1e-9], [0, 0]]])
+    angles = np.concatenate([random.uniform(-1.5, 1.5, 500), [0.0, 1e-9]])
+    given = {"vectors": vectors.tolist(), "angles": angles.tolist()}
+    (tmp_path / "given.json").write_text(json.dumps(given), encoding="utf-8")
+    found = json.loads(node(ANGLES, tmp_path))
+    assert found == [angle_of(*vectors.T).tolist(), tangent_of(angles).tolist()]
+    assert found[0] == pytest.approx(np.arctan2(*vectors.T[::-1]).tolist(), rel=2e-15)
+    assert found[1] == pytest.approx(np.tan(angles).tolist(), rel=1e-13)
 
 
 REFUSE = """

@@ -8,8 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from laconic.base.paths import build_dir
-from laconic.scene import rigid_scene_names
+from laconic.base.paths import build_dir, scene_names
 from laconic.scene.methods import EXPLICIT, STIFF_4
 from laconic_build.page.browser import Browser
 
@@ -45,7 +44,7 @@ def test_it_opens_from_disk_in_one_file_without_network_and_has_the_native_cores
 @pytest.mark.nightly
 def test_every_scene_of_the_project_can_be_chosen_and_runs(page):
     offered = page.js("return [...document.getElementById('robot').options].map((each) => each.value)")
-    assert sorted(offered) == sorted([*rigid_scene_names(), "own"])
+    assert sorted(offered) == sorted([*scene_names(), "own"])
     for name in offered:
         page.choose("robot", name)
         step(page, 3)
@@ -83,6 +82,11 @@ def test_the_scenes_own_drive_ends_at_its_end_and_begins_anew(page):
     assert seconds(page) == pytest.approx(4.0)
     page.click("play")
     page.wait("const t = parseFloat(document.getElementById('time').textContent); return t > 0 && t < 2")
+    page.click("play")
+    step(page, 45)
+    page.choose("robot", "robotino2")  # whose own drive begins
+    step(page)
+    assert seconds(page) == pytest.approx(0.1)
 
 
 @pytest.mark.nightly

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import csv
+import gzip
 import hashlib
 import json
 import re
@@ -19,9 +21,10 @@ from laconic.base.paths import SCENE_DIR, SOURCE_DIR, build_dir
 from laconic.core import load
 from laconic_build.page import page
 from laconic_build.page.browser import BROWSER, DRIVER, Browser
-from laconic_build.page.bundle import BadBundle, bundle
+from laconic_build.page.bundle import BadBundle, bundle, without_types
 from laconic_build.page.figures import figures_of, page_figures, text_of
 from laconic_build.page.page import TooLarge, make_page
+from laconic_build.page.scenes import scenes_in
 
 
 def pose(page: Browser) -> list[float]:
@@ -262,7 +265,34 @@ def test_modules_are_joined_in_the_order_of_their_imports(tmp_path):
     assert text.split("\n") == ["const t = 1;", "", "function b() {}", "", "// a", "b(t);", ""]
 
 
+def test_a_module_that_is_imported_under_another_name_has_a_scope_of_its_own(tmp_path):
+    text = bundled(tmp_path, main='import { a } from "./a.js";\nimport { a as b } from "./b.js";\na(b);\n',
+                   a="export const a = 1;\n", b="const c = 2;\nexport const a = c;\nexport { c };\n")
+    assert text.split("\n") == ["const a = 1;", "", "const { a: b } = (() => {", "const c = 2;", "const a = c;",
+                                "return { a };", "})();", "", "a(b);", ""]
+
+
+def test_comments_of_types_are_left_out_and_others_stay():
+    text = "// one\n/** @type {any} */\nlet a = /** @type {number} */ (b);\n/**\n * @param {any} c\n */\nf(1);\n"
+    assert without_types(text) == "// one\nlet a = (b);\nf(1);\n"
+
+
+@built
+def test_its_scenes_and_its_cores_are_those_of_the_project_when_unpacked():
+    text = PAGE.read_text(encoding="utf-8")
+    packed = re.findall(r'(?:const wasm =\s*"|id="facts">)([A-Za-z0-9+/=]+)', text)
+    facts, *cores = (gzip.decompress(base64.b64decode(each)) for each in packed)
+    wasm = {(build_dir() / f"wasm/{name}.wasm").read_bytes() for name in ("laconic", "laconic_hinged")}
+    assert set(cores) == wasm and len(cores) == 2
+    assert json.loads(facts)["scenes"] == json.loads(json.dumps(scenes_in(SCENE_DIR)))
+
+
 @pytest.mark.parametrize(("modules", "told"), [
+    ({"main": 'import { b, a as c } from "./a.js";\n', "a": "export const a = 1;\n"},
+     "main.js: imports a.js by its own and by other names; use one kind"),
+    ({"main": 'import { a as c } from "./a.js";\nimport { d } from "./b.js";\n', "a": "export const a = 1;\n",
+      "b": 'import { a } from "./a.js";\nexport const d = a;\n'},
+     "b.js: imports a.js by other names than another module; use the same"),
     ({"main": 'import { a } from "./a.js";\nconst a1 = a;\n', "a": "export const a = 1;\nconst a1 = 2;\n"},
      "main.js: a1 is a name of a.js, too; rename one of them"),
     ({"main": 'import { a } from "./a.js";\n', "a": 'import { m } from "./main.js";\nexport const a = 1;\n'},

@@ -155,7 +155,7 @@ def steered_log(folder: Path, kind: str, *, radius: float = 1.0, base: float = 1
     rolled = [way] if kind == "tricycle" else [ahead - side * HALF_M * base * turn for side in (1.0, -1.0)]
     wheels = [np.concatenate([[0.0], np.cumsum(each)]) / (radius * WHEEL_M) for each in rolled]
     names = [f"wheel{number}" for number in range(len(wheels))]
-    rows = np.column_stack([time, *wheels, told, pose])[::60]
+    rows = np.column_stack([time, *wheels, told, pose])[::20]
     lines = [",".join(["t", *names, "steering_rad", "x", "y", "yaw"]),
              *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]
     (folder / "run.csv").write_text("\n".join(lines) + "\n")

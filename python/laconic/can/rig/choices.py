@@ -27,7 +27,8 @@ BOARDS = {board.name: board for board in (
     Board("an386-hinges", "mps2-an386", "single", "Cortex-M4F, for vehicles with hinges"),
     Board("an500-hinges", "mps2-an500", "double", "Cortex-M7, for vehicles with hinges"),
     Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"),
-    Board("an386-drives", "mps2-an386", "single", "the same with RoboMaster drives"),
+    Board("an386-xcp", "mps2-an386", "single", "the same with XCP"),
+    Board("an386-drives", "mps2-an386", "single", "the small one with RoboMaster drives"),
     Board("an386-odrive", "mps2-an386", "single", "the same with ODrives"),
     Board("an386-canopen", "mps2-an386", "single", "the same with CANopen drives", plays_only=True),
     Board("an386-moteus", "mps2-an386", "single", "the same with moteus controllers", plays_only=True))}

@@ -6,15 +6,18 @@ several delays up to `latency_s`, and each answer must lie between the values of
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from laconic.can.rig.client import NodeClient
-from laconic.can.rig.free_run import CYCLE_S, DEFAULT_FRAMES, HINGED_FRAMES, FreeRun, run_free
+from laconic.can.rig.free_run import CYCLE_S, DEFAULT_FRAMES, HINGED_DEFAULT_FRAMES, FreeRun, run_free
 from laconic.can.rig.hinged import HingedTwin, resting_row, run_commanded
 from laconic.can.rig.judge import link_verdict
 from laconic.can.rig.latency import period_figures
 from laconic.can.rig.scaled import expected_raw, rounding_limit
-from laconic.can.rig.sensed import WHOLE_COUNT, part_of, period_of, plant_of, twin_of
+from laconic.can.rig.sensed import WHOLE_COUNT, Twin, part_of, period_of, plant_of, twin_of
 from laconic.can.rig.trial import Moved, Trial, driven
 from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.can.rig.wire import Frame
@@ -22,45 +25,48 @@ from laconic.errors import BadInput
 from laconic.scene import Scene
 
 TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group) → raw values before rounding
+Advance = Callable[[Any, int], None]                       # a command, if there is a new one, and steps
 
 
 def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
     """The values, for every answer, of a twin on which commands act `delay` periods later."""
-    if scene.has_hinges:
-        return hinged_twin_values(scene, run, delay, per_period)
-    twin = twin_of(scene, scene.plant(scene.core()), scene.rig.frames)
+    twin, advance = hinged_twin(scene) if scene.has_hinges else rigid_twin(scene)
     wanted: dict[int, list[tuple[str, int, Frame]]] = {}
     for step, frame, data in run.answers:
         wanted.setdefault(step, []).append((frame.name, part_of(frame, frame.unpack(data)), frame))
-    acting = {}
-    for seen, row in run.commands:
-        acting[seen + delay] = row
-    last, found, held = max(wanted, default=0), {}, plant_of(twin).core.input()
+    acting = {seen + delay: command for seen, command in run.commands}
+    last, found = max(wanted, default=0), TwinValues()
     events = sorted({0, *(step for step in acting if step < last), *wanted})
     for step, following in zip(events, [*events[1:], last], strict=True):
         for name, group, frame in wanted.get(step, ()):
             found[step, name, group] = expected_raw(twin, frame, group)
-        if step in acting:
-            held = plant_of(twin).core.input(acting[step])
-        twin.run(held, (following - step) * per_period)
+        advance(acting.get(step), (following - step) * per_period)
     return found
 
 
-def hinged_twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
+def rigid_twin(scene: Scene) -> tuple[Twin, Advance]:
+    """A twin without hinges, and what steps it; a command holds until the next."""
+    twin = twin_of(scene, scene.plant(scene.core()), scene.rig.frames)
+    held = plant_of(twin).core.input()
+
+    def advance(command: Any, steps: int) -> None:
+        nonlocal held
+        held = held if command is None else plant_of(twin).core.input(command)
+        twin.run(held, steps)
+
+    return twin, advance
+
+
+def hinged_twin(scene: Scene) -> tuple[Twin, Advance]:
     """The same of a vehicle with hinges."""
     twin = HingedTwin(scene)
-    wanted: dict[int, list[tuple[str, int, Frame]]] = {}
-    for step, frame, data in run.answers:
-        wanted.setdefault(step, []).append((frame.name, part_of(frame, frame.unpack(data)), frame))
-    acting = {seen + delay: rows for seen, rows in run.commands}
-    last, now = max(wanted, default=0), resting_row(twin)
-    found: TwinValues = {}
-    events = sorted({0, *(step for step in acting if step < last), *wanted})
-    for step, following in zip(events, [*events[1:], last], strict=True):
-        for name, group, frame in wanted.get(step, ()):
-            found[step, name, group] = expected_raw(twin.plant, frame, group)
-        now = run_commanded(twin.plant, now, acting.get(step), (following - step) * per_period)
-    return found
+    now = resting_row(twin)
+
+    def advance(command: Any, steps: int) -> None:
+        nonlocal now
+        now = run_commanded(twin.plant, now, command, steps)
+
+    return twin.plant, advance
 
 
 class Free(Trial):
@@ -74,7 +80,7 @@ class Free(Trial):
         self.rate_Hz = rate_Hz or round(1.0 / scene.run.step_s)
         super().__init__(node, scene, round(duration_s * self.rate_Hz))
         self.mode = f"free run at {self.rate_Hz} Hz"
-        usual = HINGED_FRAMES if scene.has_hinges else DEFAULT_FRAMES
+        usual = HINGED_DEFAULT_FRAMES if scene.has_hinges else DEFAULT_FRAMES
         self.given = (duration_s, rate_Hz, watchdog_ms, scene.rig.frames or usual)
         self.tolerances, self.latency_s, self.run = tolerances, latency_s, FreeRun()
 

@@ -24,7 +24,7 @@ from laconic.scene import Scene
 CYCLE_S = 0.01          # of VOLTAGE, as in the contract
 LONGEST_CATCH_UP_US = 1_000_000
 DEFAULT_FRAMES = ("NU", "POSE")
-HINGED_FRAMES = ("VELOCITY", "POSE", "HINGE_ANGLE")  # where the scene has hinges
+HINGED_DEFAULT_FRAMES = ("VELOCITY", "POSE", "HINGE_ANGLE")  # where the scene has hinges
 COUNTED = ("NU", "VELOCITY")                         # one a period, of vehicles without and with hinges
 MOST_COMPARED = 5000    # periods; of a longer run every n-th
 

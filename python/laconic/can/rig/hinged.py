@@ -16,7 +16,7 @@ from laconic.core.articulated import ArticulatedPlant, method_names
 from laconic.core.articulated_input import member_of
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
-from laconic.simulation.articulated import follow_rows, given_start, start_plant
+from laconic.simulation.articulated import follow_rows, given_start, start_plant, watched_hinges
 from laconic.simulation.steering import Commands
 
 HINGED_FRAMES = ("VELOCITY", "HINGE_ANGLE", "HINGE_RATE")
@@ -46,8 +46,7 @@ class HingedTwin:
         self.commands = Commands(scene, self.vehicle, scene.inputs_on_grid())
         self.first = self.commands.first_row()
         self.plant: ArticulatedPlant = start_plant(scene, self.vehicle, self.first)
-        self._watched = [(at, hinge) for at, hinge in enumerate(scene.hinges)
-                         if hinge.has_stops and not hinge.is_commanded]
+        self._watched = watched_hinges(scene)
 
     def steps(self, count: int, *, moves: bool = True) -> Iterator[np.ndarray]:
         """Inputs at the start and end of each step, (2, numbers of a row), after the vehicle has taken it (`moves`).

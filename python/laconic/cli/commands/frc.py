@@ -134,8 +134,8 @@ def play(scene_name: str, json_wanted: bool, given: dict[str, Any]) -> None:
         click.echo(json.dumps(figures, indent=1))
         return
     end = figures["final"]
-    say(f"{figures['cycles']} cycles of 20 ms, {figures['late_cycles']} late, {figures['cycle_median_ms']:.2g} ms each; "
-        f"{figures['heard']} messages heard, {figures['sent']} sent")
+    say(f"{figures['cycles']} cycles of 20 ms, {figures['late_cycles']} late, {figures['cycle_median_ms']:.2g} ms "
+        f"each; {figures['heard']} messages heard, {figures['sent']} sent")
     say(f"at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading {end['heading_rad']:.4f} rad")
     for event, count in figures["events"].items():
         say(f"{count} times {event}")

@@ -17,16 +17,21 @@ LEFT_OUT = ("session", "run")
 
 @click.command("identify", cls=SeveralAfter)
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
-@click.option("--scene", type=SceneName(), required=True, help="The robot with its nominal values.")
+@click.option("--scene", type=SceneName(hinges=True), required=True, help="The robot with its nominal values.")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
               help="Write the scene with the values found; - for stdout.")
-@click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
-              help="Parameters that may change. Geometry: radius (of each wheel), distance (of all wheels, one "
-              "factor), centre-of-mass, place and heading (of the robot against the recorded pose), axle, roller "
-              "(angles of each wheel), common-radius (one of all wheels). On ground with friction: drag (of rollers), "
-              "friction, axle-friction, wheel-friction (of each, as a share), viscous (of motors), controller (of the "
-              "wheels' speeds). From voltages or currents: mass, yaw-inertia, wheel-inertia, motor-gain, "
-              "motor-damping, resistance, torque-constant.")
+@click.option("--map-out", type=OutputFile(".toml", stdout=False), metavar="FITTED_MAP.toml",
+              help="Write the map with what was found of it: steering, lags, place of the tracker. Needs --map.")
+@click.option("--free", metavar="NAMES",
+              help="Parameters that may change [default: radius,distance; with steered wheels radius,wheelbase,"
+              "steering-gain,steering-offset]. Geometry: radius (of each wheel), distance (of all wheels, one factor), "
+              "centre-of-mass, place and heading (of the robot against the recorded pose), clock-lag (of the pose), "
+              "axle, roller (angles of each wheel), common-radius (one of all wheels). Steered: wheelbase, track, "
+              "trail, steering-gain, steering-offset, steering-curve, steering-lag, steering-rate, speed-gain, "
+              "speed-offset, speed-lag; place and heading are the tracker's. On ground with friction: drag (of "
+              "rollers), friction, creep, scrub, scrub-fade, axle-friction, wheel-friction (of each, as a share), "
+              "viscous (of motors), controller (of the wheels' speeds). From voltages or currents: mass, yaw-inertia, "
+              "wheel-inertia, motor-gain, motor-damping, resistance, torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
@@ -37,7 +42,8 @@ LEFT_OUT = ("session", "run")
 @click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
               help="Draw true, nominal and identified paths, the first run of each session.")
 @json_flag("Machine-readable result on stdout.")
-def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, prior_percent: float,
+def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path | None, free: str | None,
+            prior_percent: float,
             map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, plot: Path | None,
             json_wanted: bool) -> None:
     """Finds parameters of a scene from LOG..., recorded runs or folders of them.
@@ -51,27 +57,35 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     stderr.
     """
     from laconic.base.progress import progress_bar
-    from laconic.robot.identify import report
+    from laconic.robot.identify import geometry, report, steered
+    from laconic.robot.identify.fitted_map import fitted_map_text
     from laconic.robot.identify.fitted_toml import fitted_text
     from laconic.robot.identify.geometry import geometry_of
     from laconic.robot.identify.picture import draw
-    from laconic.robot.identify.study import identify
+    from laconic.robot.identify.study import identify, parts
     from laconic.robot.identify.words_of_errors import failures
     from laconic.robot.logs import gather_logs
+    from laconic.robot.logs.column_map import named_map
     from laconic.scene import read_scene
 
+    if map_out is not None and map_path is None:
+        raise BadInput("--map-out: needs --map, the map that it corrects")
     if not 0.0 < prior_percent <= 100.0:
         raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
     given = read_scene(scene)
-    names = names_in(free)
+    names = names_in(free) if free is not None else steered.USUAL if given.has_hinges else geometry.USUAL
     parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []
-    with progress_bar("identifying", 1 + len(runs)) as advance:
+    left_out = len(parts(runs, leave_out)) if leave_out else 0
+    both = given.has_hinges and any(name in steered.SLIPPING for name in names)  # without slip, too
+    with progress_bar("identifying", 1 + left_out * (1 + both)) as advance:
         study = identify(given, runs, parameters, judge=others, leave_out=leave_out,
                          with_controller="controller" in names, advance=advance)
     if out is not None:
         write_text(out, fitted_text(study))
+    if map_out is not None and map_path is not None:
+        write_text(map_out, fitted_map_text(study, named_map(map_path)))
     if plot is not None:
         draw(study, plot)
     if json_wanted:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from laconic.base.outputs import write_text
 from laconic.can.rig.choices import KINDS, LOGS
 from laconic.cli.options import (
     InputPath,
@@ -60,17 +61,20 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--live", is_flag=True, help="Show the signals while it runs.")
 @click.option("--stop", is_flag=True, help="Stop the node, whatever it does, and nothing else; no SCENE needed.")
 @click.option("--reset", is_flag=True, help="Stop the node and put its vehicle back to its start; no SCENE needed.")
+@click.option("--a2l", type=OutputFile(".a2l"), metavar="FILE",
+              help="Write the A2L file of the node's XCP for calibration tools, and drive nothing.")
 @click.option("--junit", type=OutputFile(".xml"), help="Results for CI.")
 @json_flag()
 def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: bool, stop: bool, reset: bool,
-            **given: Any) -> int:
+            a2l: Any, **given: Any) -> int:
     """Drives a node over CAN with the inputs of SCENE, runs the core as a reference, and judges every signal.
 
     Without --interface and --board a node in this process answers on python-can's virtual bus, in virtual time. The
     node is at rest when the command ends, also when it is interrupted. Exit status: 1 if a verdict fails or the bus or
     node dies in the run; 2 if no node can be reached; 130 or 143 if SIGINT (Ctrl-C) or SIGTERM ended the run.
     """
-    from laconic.can.rig.options import Options
+    from laconic.can.rig.a2l import a2l_text
+    from laconic.can.rig.options import Options, read_id_base
 
     mode = only_one({"--lockstep": lockstep, "--same-bits": same_bits, "--free-run": free_run}) or "--lockstep"
     only_one({"--same-bits": same_bits, "--tolerance": bool(given["tolerances"])})
@@ -84,6 +88,10 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
     if scene_name is None:
         raise BadInput("SCENE: is missing; name the scene to drive, or give --stop or --reset")
     scene = read_scene(scene_name).with_run(method=options.method, real=options.real)
+    if a2l:
+        goes_with("--a2l", "--id-base")
+        write_text(a2l, a2l_text(scene, read_id_base(options.id_base, scene)))
+        return 0
     return drive(scene, options)
 
 

@@ -9,13 +9,25 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, json_flag, one_of
+from laconic.cli.options import (
+    InputPath,
+    OutputFile,
+    SceneName,
+    belongs_to,
+    check_step,
+    json_flag,
+    one_of,
+    only_one,
+)
 from laconic.errors import BadInput, ResultFails
 from laconic.ros2 import GID_BYTES, MIDDLEWARES, OF_DDS, USUAL_DISTRIBUTION
 from laconic.scene import METHODS, read_scene
 
 if TYPE_CHECKING:
     from laconic.ros2.session import Session
+
+
+MOST_ENDS = 5  # robots whose last pose is printed
 
 
 @click.command("ros2")
@@ -33,8 +45,8 @@ if TYPE_CHECKING:
 @click.option("--rate", "rate_Hz", type=float, default=50.0, metavar="HZ", show_default=True, help="Of all topics.")
 @click.option("--sim-time", "is_sim_time", is_flag=True, help="Stamps of simulated time, and /clock.")
 @click.option("--speed", type=float, default=1.0, help="With --sim-time: seconds of the robot in a real one.")
-@click.option("--stamped/--unstamped", "is_stamped", default=None,
-              help="Hear TwistStamped alone, or Twist alone, on cmd_vel.  [default: both]")
+@click.option("--stamped", is_flag=True, help="Hear TwistStamped alone on cmd_vel.  [default: Twist, too]")
+@click.option("--unstamped", is_flag=True, help="Hear Twist alone on cmd_vel.")
 @click.option("--frame", "frames", multiple=True, metavar="NAME=FRAME",
               help="Another name of the frame base, odom, map, imu or scan.")
 @click.option("--shared-tf", "shares_tf", is_flag=True, help="/tf for all, with the namespace before each frame.")
@@ -52,25 +64,31 @@ if TYPE_CHECKING:
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @json_flag("Machine-readable summary.")
 def command(scene_name: str, distro: str | None, rmw: str | None, domain: int | None, is_silent: bool,
-            method: str | None, step_s: float | None, json_wanted: bool, **given: Any) -> int:
+            method: str | None, step_s: float | None, json_wanted: bool, stamped: bool, unstamped: bool,
+            **given: Any) -> int:
     """Runs the robot of SCENE as a ROS 2 node: cmd_vel in; odom, tf, joint_states, imu … out.
 
     A controller as bases have one turns velocities into voltages, and odom is what its encoders make of the motion;
     ground_truth/odom is the motion itself. [base] of the scene has gains, limits and beliefs. The robot stops when
     cmd_vel falls silent. Ctrl-C ends the run with exit status 0; a step that was refused makes it 1.
     """
+    check_step(step_s)
+    belongs_to("--rmw zenoh", "zenoh" in middlewares_of(rmw), "--router")
+    only_one({"--stamped": stamped, "--unstamped": unstamped})
     from laconic.ros2.session import Ros2Options, Session, write_record
 
-    check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s)
     options = Ros2Options(distribution_of(distro), domain_of(domain), announces=not is_silent,
-                          services_for=middlewares_of(rmw), **given)
+                          services_for=middlewares_of(rmw),
+                          is_stamped=stamped if stamped or unstamped else None, **given)
 
     def say(text: str) -> None:
         click.echo(text, err=json_wanted)
 
+    from laconic.ros2.lines import library_lines
+
     began, cpu = time.perf_counter(), time.process_time()
-    with Session(scene, options, say) as session:
+    with library_lines(say) as library, Session(scene, options, say, library=library) as session:
         try:
             say(introduction(session))
             session.run()
@@ -127,12 +145,17 @@ def introduction(session: Session) -> str:
 
 def summary(figures: dict[str, Any]) -> str:
     """The run in some lines."""
-    end = figures["final"]
-    lines = [f"{figures['cycles']} cycles of {1e3 * figures['period_s']:g} ms in {figures['seconds']:.2f} s, "
+    ran_s = figures["cycles"] * figures["period_s"]
+    speed = f", {ran_s / figures['seconds']:.3g} times as fast as the clock" if figures["is_faster"] else ""
+    ends = figures["ends"]
+    lines = [f"{figures['cycles']} cycles of {1e3 * figures['period_s']:g} ms in {figures['seconds']:.2f} s{speed}, "
              f"{figures['commands']} commands heard, {figures['messages']} messages sent, "
              f"{100 * figures['cpu_share']:.0f} % of a core",
              f"late by {figures['late_median_ms']:.2g} ms in the median, {figures['late_99_percent_ms']:.2g} ms at "
              f"99 %, {figures['late_most_ms']:.2g} ms at most; {figures['late_cycles']} cycles by a period or more",
-             f"at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading {end['heading_rad']:.4f} rad"]
+             *(f"{end['name'] + ' ' if ends[1:] else ''}at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading "
+               f"{end['heading_rad']:.4f} rad" for end in ends[:MOST_ENDS])]
+    if ends[MOST_ENDS:]:
+        lines.append(f"and {len(ends) - MOST_ENDS} more robots; --json lists all of them")
     lines += [f"{count} times {event}" for event, count in figures["events"].items()]
     return "\n".join(lines)

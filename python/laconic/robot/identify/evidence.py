@@ -15,6 +15,7 @@ from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.resolution import floor_of_all
 from laconic.robot.identify.rolling_evidence import RollingEvidence
 from laconic.robot.identify.solve import Evidence
+from laconic.robot.identify.steered_evidence import SteeredEvidence
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import run_names
 from laconic.robot.replay.measures import RunErrors
@@ -46,6 +47,10 @@ def kind_of(logs: Sequence[Log], parameters: Parameters) -> str:
 def evidence_of(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> Evidence:
     """Of the kind that the parameters need and the logs have."""
     kind, base = kind_of(logs, parameters), base_of(scene, parameters)
+    if scene.has_hinges:
+        return SteeredEvidence(scene, base, logs)
+    if any(p.group == "clock-lag" for p in parameters.each) and (kind != "path" or slips(base)):
+        raise BadInput("--free clock-lag: is found by rolling without slip and a recorded pose; find it so first")
     if kind == "motion":
         return _moved(scene, logs, parameters)
     if kind == "turn" and not slips(base):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from laconic.robot.identify.ground import OF_TREES
 from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
 from laconic.robot.identify.study import Study, fitted_scene, parts
@@ -20,6 +21,8 @@ def fitted_text(study: Study) -> str:
     for index, wheel in enumerate(data["vehicle"]["wheel"]):
         _rewrite(study, index, wheel, comments)
     _rewrite_vehicle(study, data, comments)
+    if study.scene.has_hinges:
+        _rewrite_hinges(study, data["vehicle"], comments)
     head = [f"# {study.scene.path.name}, with parameters identified by `laconic identify` from recorded runs:"]
     head += [f"#   {', '.join(log.path.name for log in part)} of {part[0].session}"
              for part in parts(study.logs, "session")]
@@ -33,7 +36,8 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
     """Keys that are no wheel's: of [vehicle], [vehicle.motor], [ground] and [speed_controller]."""
     after = fitted_scene(study.scene, study.found).vehicle
     tables = {("vehicle",): data["vehicle"], ("vehicle", "motor"): data["vehicle"].get("motor", {})}
-    if any(p.path.startswith("ground.") for p in study.found.parameters.each) and "ground" in after:
+    if any(p.path.startswith("ground.") or p.group in OF_TREES
+           for p in (study.found.asked or study.found.parameters).each):
         data["vehicle"].pop("friction_coefficient", None)  # ground.friction_coefficient says it
         tables["ground",] = data.setdefault("ground", {})
         tables["ground",].update({key: after["ground"][key] for key in after["ground"] if not key.startswith("slope_")})
@@ -52,6 +56,43 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
     if study.controller is not None:
         data["speed_controller"] = study.controller.values()
         comments.update({("speed_controller", key): text for key, text in study.controller.comments().items()})
+
+
+def _rewrite_hinges(study: Study, data: dict[str, Any], comments: Comments) -> None:
+    """Places of steered wheels, trails of casters, and what wheels have on ground with friction."""
+    before, after = study.scene.vehicle, fitted_scene(study.scene, study.found).vehicle
+    notes = {group: "; ".join(_interval(study, p.path) for p in study.found.parameters.each if p.group == group)
+             for group in ("wheelbase", "track")}
+    bodies = {body["name"]: (body, was) for body, was in zip(after["body"], before["body"], strict=True)}
+    for index, wheel in enumerate(data["wheel"]):
+        now, place = after["wheel"][index], ("vehicle", "wheel", str(index))
+        for key in ("creep", "scrub_radius_m", "scrub_fade_m"):
+            if now.get(key) != before["wheel"][index].get(key):
+                wheel[key] = now[key]
+                which = "steered" if "body" in now else "fixed"
+                comments[(*place, key)] = _interval(
+                    study, f"vehicle.wheel[{'*' if key == 'scrub_fade_m' else which}].{key}")
+        if "steered" in wheel:
+            _move(wheel, ("x_m", "y_m"), *bodies[now["body"]], place, notes, comments)
+        elif now["y_m"] != before["wheel"][index]["y_m"]:
+            comments[(*place, "x_m")], comments[(*place, "y_m")] = "", notes["track"]
+    for index, body in enumerate(data.get("body", ())):
+        _move(body, ("hinge_x_m", "hinge_y_m"), *bodies[body["name"]], ("vehicle", "body", str(index)), notes, comments)
+    for index, caster in enumerate(data.get("caster", ())):
+        wheel = next((i for i, each in enumerate(after["wheel"]) if each.get("body") == caster["name"]), None)
+        if wheel is not None and after["wheel"][wheel]["x_m"] != before["wheel"][wheel]["x_m"]:
+            caster["trail_m"] = -after["wheel"][wheel]["x_m"]
+            comments["vehicle", "caster", str(index), "trail_m"] = _interval(
+                study, f"vehicle.wheel[{wheel + 1}].trail_m")
+
+
+def _move(table: dict[str, Any], keys: tuple[str, str], now: dict[str, Any], was: dict[str, Any],
+          place: tuple[str, ...], notes: dict[str, str], comments: Comments) -> None:
+    """A hinge that a fit has moved."""
+    for key, own, group in zip(keys, ("hinge_x_m", "hinge_y_m"), ("wheelbase", "track"), strict=True):
+        if now[own] != was[own]:
+            table[key] = now[own]
+            comments[(*place, key)] = notes[group]
 
 
 def _that_move(study: Study) -> list[Parameter]:
@@ -114,7 +155,7 @@ def _interval(study: Study, path: str) -> str:
     for parameter, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True):
         if parameter.path == path:
             return interval_text(parameter, float(value), float(half))
-    return "turned with all wheels"
+    return "turned with all wheels" if not study.scene.has_hinges else ""
 
 
 def interval_text(parameter: Parameter, value: float, half: float) -> str:

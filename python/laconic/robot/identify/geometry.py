@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from laconic.errors import BadInput, nearest_of, shown
-from laconic.robot.identify import ground, motion
+from laconic.robot.identify import ground, motion, steered
 from laconic.robot.identify.parameter import Parameter, Parameters, Vehicle
 from laconic.robot.replay.rolling import wheel_radii
 from laconic.scene import Scene
@@ -25,16 +25,25 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
     makers: dict[str, Callable[[Scene, float], list[Parameter]]] = {
         "radius": _radii, "common-radius": _common_radius, "distance": _distance, "place": _place,
         "heading": _heading, "centre-of-mass": _centre_of_mass, "axle": _axles, "roller": _rollers, **ground.MAKERS,
-        **motion.MAKERS}
+        **motion.MAKERS, **{name: steered.MAKERS[name] for name in steered.FOR_ALL}}
+    if scene.has_hinges:
+        makers = {**steered.MAKERS, "common-radius": _common_radius, "friction": ground.MAKERS["friction"]}
+        if {"steering-curve", "steering-gain"} <= set(free):
+            raise BadInput("--free steering-curve: says what steering-gain says, and more; take one of them")
     found: list[Parameter] = []
-    for name in GROUPS:
+    for name in dict.fromkeys([*(group for group in GROUPS if group in makers), *makers]):
         if name in free:
             made = makers[name](scene, relative_sd)
             if not made:
                 raise BadInput(f"--free {name}: {scene.path} {motion.why_none(scene, name)}")
             found += made
     if unknown := [name for name in free if name not in makers]:
-        raise BadInput(f"--free: there is no {shown(unknown[0])}; {nearest_of(unknown[0], GROUPS)}")
+        if scene.has_hinges and unknown[0] in GROUPS:
+            raise BadInput(f"--free {unknown[0]}: is not found for vehicles with hinges; take some of "
+                           f"{', '.join(makers)}")
+        if unknown[0] in steered.MAKERS:
+            raise BadInput(f"--free {unknown[0]}: is of vehicles with hinges, and {scene.path} has none; leave it out")
+        raise BadInput(f"--free: there is no {shown(unknown[0])}; {nearest_of(unknown[0], tuple(makers))}")
     return Parameters(tuple(found))
 
 

@@ -39,7 +39,7 @@ DIFFERENCE = 0.02         # of z: far above the tolerance of the core's solver
 
 def base_of(scene: Scene, parameters: Parameters) -> Vehicle:
     """The vehicle; with usual friction where parameters of it are free and the scene has none."""
-    if slips(scene.vehicle) or not any(p.group in GROUPS for p in parameters.each):
+    if slips(scene.vehicle) or not any(p.group in (*GROUPS, *OF_TREES) for p in parameters.each):
         return scene.vehicle
     vehicle = copy.deepcopy(scene.vehicle)
     coefficient = vehicle.pop("friction_coefficient", 0.0) or USUAL_FRICTION
@@ -105,6 +105,7 @@ MAKERS: dict[str, Callable[[Scene, float], list[Parameter]]] = {
     "axle-friction": _of_ground("axle_friction_Nm", "dry friction of the axles", "axle-friction", "N·m", 0.0, 0.3),
     "viscous": _viscous, "wheel-friction": _of_each_wheel}
 GROUPS = tuple(MAKERS)
+OF_TREES = ("creep", "scrub", "scrub-fade")   # of vehicles with hinges
 BY_CURRENTS = ("friction", "axle-friction", "viscous")
 WHEEL_SHARE_SD = 0.3
 

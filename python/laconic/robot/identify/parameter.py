@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from laconic.robot.replay.steered_signals import Fitted, of_log
+
 Vehicle = dict[str, Any]
 """The keys of `[vehicle]`, as a Scene has them."""
 
@@ -75,7 +77,7 @@ class Parameters:
 
     def vehicle(self, base: Mapping[str, Any], values: np.ndarray) -> Vehicle:
         """A copy of the vehicle with these values in it, written in order."""
-        vehicle = copy.deepcopy(dict(base))
+        vehicle = Fitted(copy.deepcopy(dict(base)), of_log(base))
         for parameter, value in zip(self.each, values, strict=True):
             parameter.write(vehicle, float(value))
         return vehicle

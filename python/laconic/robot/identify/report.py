@@ -39,9 +39,13 @@ def _controller_rows(study: Study) -> list[str]:
 
 
 def _summary(study: Study) -> list[str]:
-    rows = (("nominal, on the runs of the fit", study.nominal), ("fitted, on the same runs", study.fitted),
+    rows = [("nominal, on the runs of the fit", study.nominal), ("fitted, on the same runs", study.fitted),
             ("left out of the fit", study.left_out), ("nominal, on the runs to judge", study.judged_nominal),
-            ("fitted, on the runs to judge", study.judged))
+            ("fitted, on the runs to judge", study.judged)]
+    if (other := study.without_slip) is not None:
+        rows += [("rolling without slip, on the runs of the fit", other.fitted),
+                 ("rolling without slip, left out of the fit", other.left_out),
+                 ("rolling without slip, on the runs to judge", other.judged)]
     what, factor, unit = SAID[study.measure]
     lines = [f"| {what}, mean over sessions | {unit} |", "| --- | --- |"]
     return lines + [f"| {name} | {factor * mean_error(errors, study.measure):.3f} |" for name, errors in rows if errors]

@@ -8,7 +8,7 @@ follows.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,7 @@ from laconic.robot.logs.log import Point
 from laconic.robot.replay.measures import LEAST_LENGTH_M, path_length
 from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import path_of, rolling_of
+from laconic.robot.replay.steered_signals import begun_at, late, of_log
 
 if TYPE_CHECKING:
     from laconic.robot.identify.resolution import Floor
@@ -43,43 +44,49 @@ class Run:
     scale: float            # 1 / (length · √points)
     has_heading: bool = True
 
-    def path(self, moved: np.ndarray) -> np.ndarray:
-        """The path of displacements, from the true first pose; where positions alone are known, fitted to them."""
-        if self.has_heading:
+    time_s: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    def path(self, moved: np.ndarray, lag_s: float = 0.0) -> np.ndarray:
+        """The path of displacements, from the true first pose; where positions alone are known, fitted to them. With a
+        lag of the tracker, what it saw at each sample."""
+        if self.has_heading and lag_s == 0.0:
             return path_of(moved, self.pose[0])
-        return fitted(path_of(moved, np.zeros(3)), self.taken, self.pose[self.taken, :2])
+        path = late(path_of(moved, np.zeros(3)), self.time_s, self.time_s, lag_s)
+        return begun_at(path, self.pose[0]) if self.has_heading else fitted(
+            path, self.taken, self.pose[self.taken, :2])
 
 
 class RollingEvidence:
     """Runs with a true pose, for `solve.fit`."""
 
-    directions = 2
+    directions: float = 2
     difference = 0.0
     floor: Floor | None = None     # of errors: what sampling and rounding make
+    by_wheels = True
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
         self._core, self._path = core, scene_path
         self.sessions = [str(log.path.resolve().parent) for log in logs]
-        self.runs = [run_of(log) for log in logs]
+        self.runs = [run_of(log, by_wheels=self.by_wheels) for log in logs]
 
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Distances x, y between rolled and true path."""
-        rolling = rolling_of(self._core, vehicle, self._path)
-        return [path_residual(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
+        return [path_residual(run, run.path(rolling.moved(run.rotation_rad, run.point), lag_s)) for run in self.runs]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch: its error, carried to all points of the path after it, times the Jacobian there."""
-        rolling = rolling_of(self._core, vehicle, self._path)
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
         found = []
         for run, jacobian in zip(self.runs, jacobians, strict=True):
-            path = run.path(rolling.moved(run.rotation_rad, run.point))
+            path = run.path(rolling.moved(run.rotation_rad, run.point), lag_s)
             found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
         return found
 
     def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Of each stretch of each run: displacement ahead and to the left, turn."""
-        rolling = rolling_of(self._core, vehicle, self._path)
-        return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point))) for run in self.runs]
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
+        return [stretch_errors(run, run.path(rolling.moved(run.rotation_rad, run.point), lag_s)) for run in self.runs]
 
 
 def run_of(log: Log, *, by_wheels: bool = True) -> Run:
@@ -95,7 +102,7 @@ def run_of(log: Log, *, by_wheels: bool = True) -> Run:
     cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
     rotation = log.rotation_rad() if by_wheels else np.zeros((len(log.time_s) - 1, 0))
     return Run(rotation, pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
-               log.has_heading)
+               log.has_heading, log.time_s)
 
 
 def path_residual(run: Run, path: np.ndarray) -> np.ndarray:

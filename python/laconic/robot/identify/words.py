@@ -13,6 +13,7 @@ from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.motion import ELECTRIC, inputs_of, stepping
 from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, jacobians_of
+from laconic.robot.identify.steered_evidence import SteeredEvidence, motions, sizes_of
 from laconic.robot.logs import Log
 from laconic.robot.replay.held_wheels import hold
 from laconic.robot.replay.measures import path_length
@@ -24,6 +25,7 @@ from laconic.scene.ground import slips
 WEAK = 1.0            # information in units of the prior: below it the runs say less than was known beforehand
 PARTS = 0.35          # a parameter is named where its share in a combination is at least so much of the largest
 TELLS_ALL = "The runs tell every parameter better than it was known before."
+STEERED = ("log.", "vehicle.", "ground.")   # paths of parameters of steered vehicles; those of an audit differ
 HELPS = 0.9           # of the uncertainty: a run that leaves more is no advice
 SAMPLES, PERIOD_S = 200, 0.05
 MOTIONS = {
@@ -37,7 +39,8 @@ def in_words(scene: Scene, found: Fit, runs: Sequence[Log]) -> list[str]:
     assert found.asked is not None and found.asked_information is not None
     size, directions = np.linalg.eigh(found.information)
     weak = [each for each in zip(size, directions.T, strict=True) if each[0] < WEAK]
-    candidates = candidate_information(scene, found, runs) if (weak or found.untold) and not scene.has_hinges else {}
+    candidates = candidate_information(scene, found, runs) if (weak or found.untold) and (
+        not scene.has_hinges or all(p.path.startswith(STEERED) for p in found.asked.each)) else {}
     words = [_untold(name, found, candidates) for name in found.untold]
     hint = _hint(found, runs)
     words += [_weak(found, strength, direction, candidates, hint) for strength, direction in weak]
@@ -143,6 +146,8 @@ def candidate_information(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict
     sharply for being short.
     """
     assert found.asked is not None
+    if scene.has_hinges:
+        return _of_hinges(scene, found, runs)
     core, parameters, information = scene.core(), found.asked, {}
     z = _z_of_found(found)
     base, vehicle = base_of(scene, parameters), parameters.vehicle(base_of(scene, parameters), parameters.values(z))
@@ -154,6 +159,17 @@ def candidate_information(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict
         evidence = evidence_of(scene, [log], parameters)
         jacobian = jacobians_of(base, parameters, evidence, z)[0]
         information[name] = jacobian.T @ jacobian * (_length(log) / _usual_length(runs) / found.scale) ** 2
+    return information
+
+
+def _of_hinges(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict[str, np.ndarray]:
+    assert found.asked is not None
+    parameters, z, information = found.asked, _z_of_found(found), {}
+    base = base_of(scene, parameters)
+    sizes = sizes_of(SteeredEvidence(scene, base, runs).errors(parameters.vehicle(base, parameters.values(z))))
+    for name, log in motions(scene, parameters.vehicle(base, parameters.values(z)), runs).items():
+        jacobian = jacobians_of(base, parameters, SteeredEvidence(scene, base, [log], sizes), z)[0]
+        information[name] = jacobian.T @ jacobian / found.scale**2
     return information
 
 

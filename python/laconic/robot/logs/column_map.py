@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput, shown
-from laconic.robot.logs.log import PER_WHEEL, STEERING
+from laconic.robot.logs.log import COMMANDED, PER_WHEEL, STEERING
 from laconic.robot.logs.quantity import (
     YAW_RATE,
     Quantity,
@@ -16,8 +16,8 @@ from laconic.robot.logs.quantity import (
     is_numbered,
     quantity_of,
     shorthand,
+    single_of,
     time_of,
-    yaw_rate_of,
 )
 from laconic.scene.map_toml import read_map_toml
 from laconic.scene.table import Table
@@ -29,7 +29,7 @@ KEYS = {"separator": "text", "header_lines": "text", "names_line": "text", "deci
         "dbc": "can", "group": "can", "channel": "can", "joints": "bag", "imu": "bag", "stamps": "bag"}
 """Keys that one format alone reads."""
 STAMPS = ("header", "arrival")
-QUANTITIES = (*PER_WHEEL, STEERING, "pose", YAW_RATE)
+QUANTITIES = (*PER_WHEEL, STEERING, COMMANDED, "pose", YAW_RATE)
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def map_of(table: Table) -> ColumnMap:
                        'column = "/imu.angular_velocity.z"')
         elif table.has(each) and each not in quantities:
             inner = table.table(each)
-            found = yaw_rate_of(inner, form) if each == YAW_RATE else quantity_of(
+            found = single_of(inner, each, form) if each in (YAW_RATE, COMMANDED) else quantity_of(
                 inner, each, None if each == STEERING else count, form)
             quantities[each] = found
             if each in PER_WHEEL and not found.first and not is_numbered(found.columns):

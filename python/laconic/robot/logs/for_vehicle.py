@@ -69,7 +69,7 @@ def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]], radius_m: float | 
     """
     log = _by_name(_by_radius(log, wheels, radius_m), wheels)
     there, count = wheels_of(log), len(wheels)
-    if there == count:
+    if there == count or (there == 0 and log.speed_m_per_s is not None):
         return log
     if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in _members(log).values()):
         return _reordered(log, lambda values: values[:, :count])

@@ -12,6 +12,7 @@ from laconic.errors import BadInput
 
 PER_WHEEL = ("set_speed", "wheel_angle", "wheel_speed", "current", "voltage")
 STEERING = "steering_angle"
+COMMANDED = "speed"
 POINTS = ("origin", "centre_of_mass")
 Point = str | tuple[float, float]
 """One of POINTS, or x, y [m] in the body's frame."""
@@ -19,6 +20,17 @@ LEAST_SAMPLES = 10
 MEMBERS = {"set_speed": "set_speed_rad_per_s", "wheel_angle": "wheel_angle_rad", "wheel_speed": "wheel_speed_rad_per_s",
            "current": "current_A", "voltage": "voltage_V"}
 """The member of a log that holds each quantity of the wheels."""
+
+
+@dataclass(frozen=True)
+class Following:
+    """How wheels follow what the log says of their steering and of the vehicle's speed, by the map."""
+
+    is_command: bool = False                # steering: held from its line on
+    lag_s: float = 0.0                      # of the steering, first order
+    rate_limit_rad_per_s: float = np.inf
+    curve: tuple[tuple[float, float], ...] = ()   # angle in the log, angle of the hinge; empty: the same
+    speed_lag_s: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +68,9 @@ class Log:
     wheel_names: tuple[str, ...] = ()       # of the columns, where their order is not known yet
     counter: Counter | None = None          # of wheel_angle_rad, until its rows were compared with other evidence
     column_names: tuple[str, ...] = ()      # of the joints of the scene's wheels, where the log names them
+    speed_m_per_s: np.ndarray | None = None  # commanded, of the middle of the fixed axle; held from its line on
+    following: Following = Following()
+    part: str = ""                          # of a log with gaps: "part 2"
 
     @property
     def seen(self) -> np.ndarray:
@@ -75,7 +90,8 @@ class Log:
     @property
     def stem(self) -> str:
         """The file's name without its endings."""
-        return self.path.name.partition(".")[0] or self.path.name
+        stem = self.path.name.partition(".")[0] or self.path.name
+        return f"{stem} {self.part}" if self.part else stem
 
     def needs(self, quantity: str, why: str) -> np.ndarray:
         """A quantity that must be there; BadInput says why."""
@@ -114,7 +130,7 @@ def run_names(logs: Sequence[Log]) -> list[str]:
     stems = [log.stem for log in logs]
     names = [f"{log.session}/{log.stem}" for log in logs]
     found = stems if len(set(stems)) == len(stems) else names
-    return found if len(set(found)) == len(found) else [str(log.path) for log in logs]
+    return found if len(set(found)) == len(found) else [f"{log.path} {log.part}".strip() for log in logs]
 
 
 def by_session(logs: Sequence[Log]) -> dict[str, list[Log]]:

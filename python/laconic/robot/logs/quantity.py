@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 from laconic.errors import nearest_of, shown
-from laconic.robot.logs.log import POINTS, STEERING
+from laconic.robot.logs.log import COMMANDED, POINTS, STEERING
 from laconic.robot.logs.units import (
     ANGLE,
     ISO,
@@ -55,12 +56,14 @@ class Quantity:
     radius_m: float | None = None      # that made metres of angles; None: the scene's
     quaternion: str = ""               # order of its parts; empty: the heading is an angle
     mount: tuple[float, float, float] | None = None   # x, y [m], heading [rad] of the tracker on the robot
-    lag_s: float = 0.0                 # so much later than its stamps is the pose
+    lag_s: float = 0.0                 # so much later than its stamps is the pose; of commands: of first order
     keyword: str = ""                  # of the lines that hold it; empty: of all
     time: str = ""                     # column of its own instants; empty: those of the log
     topic: str = ""                    # of messages whose type says which fields are meant
     frames: tuple[str, ...] = ()       # parent and child: the pose of the one in the other, of /tf
     hinges: tuple[str, ...] = ()       # of the scene, whose angle each column is; empty: in the scene's order
+    rate_limit_rad_per_s: float = math.inf              # at which a hinge follows
+    curve: tuple[tuple[float, float], ...] = ()         # its angle over the column's
 
     def channel_of(self, index: int, usual: str) -> str:
         """The channel of a column; empty: the only one of the log."""
@@ -140,7 +143,9 @@ def imu_of(topic: str) -> Quantity:
     return Quantity(YAW_RATE, (f"{topic}.angular_velocity.z",), ("rad/s",))
 
 
-KINDS = {"wheel_angle": ("absolute", "increments"), "pose": ("absolute", "increments", "body-increments")}
+COMMAND = "command"
+KINDS = {"wheel_angle": ("absolute", "increments"), STEERING: ("absolute", COMMAND),
+         "pose": ("absolute", "increments", "body-increments")}
 MOST_WHEELS = 1000
 QUATERNIONS = ("xyzw", "wxyz", "zw")
 FORMS_OF_POSE = "3, of x, y and heading, or 2, of x and y, or 6, of x, y and a quaternion"
@@ -232,17 +237,44 @@ def _wrap(table: Table, kinds: tuple[type, ...]) -> float | bool | None:
     return wrap
 
 
-def yaw_rate_of(table: Table, form: str) -> Quantity:
-    """Of a gyro: one column."""
-    column, unit, sign = _column(table, "column"), _units(table, YAW_RATE, 1), table.number("sign", 1.0)
+def single_of(table: Table, name: str, form: str) -> Quantity:
+    """One column: of a gyro, or the commanded speed."""
+    column, unit, sign = _column(table, "column"), _units(table, name, 1), table.number("sign", 1.0)
     scale, offset = table.number("scale", 1.0), table.number("offset", 0.0)
     if abs(sign) != 1.0 or scale == 0.0:
         table.fail("scale" if scale == 0.0 else "sign", "holds no factor that keeps the values; give sign 1 or -1, "
                    "and a scale that is not 0")
     is_optional, channel = table.flag("optional", False), channel_of(table, form)
+    lag_s = _lag(table) if name == COMMANDED else 0.0
+    keyword = table.text("rows", "") if name == COMMANDED else ""
     table.done()
-    return Quantity(YAW_RATE, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional,
-                    channels=(channel,) if channel else ())
+    return Quantity(name, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional,
+                    channels=(channel,) if channel else (), lag_s=lag_s, keyword=keyword)
+
+
+def _lag(table: Table) -> float:
+    lag_s = table.number("lag_s", 0.0)
+    if lag_s < 0.0:
+        table.fail("lag_s", f"is {lag_s:g}; give the time in which a command is followed, at least 0")
+    return lag_s
+
+
+def _following(table: Table) -> dict[str, Any]:
+    """How a wheel follows the angle that is given for it."""
+    limit = table.number("rate_limit_rad_per_s") if table.has("rate_limit_rad_per_s") else math.inf
+    curve: tuple[tuple[float, float], ...] = ()
+    if not limit > 0.0:
+        table.fail("rate_limit_rad_per_s", f"is {limit:g}; give a rate above 0, or leave it out")
+    if table.has("curve"):
+        given = table.value("curve", ..., (list,), "pairs of an angle in the log and the hinge's, in rad")
+        if not all(isinstance(pair, list) and len(pair) == 2 and all(
+                isinstance(x, (int, float)) and not isinstance(x, bool) and math.isfinite(x) for x in pair)
+                for pair in given) or len(given) < 2:
+            table.fail("curve", f"is {shown(given)}; give at least 2 pairs of an angle in the log and the hinge's, rad")
+        curve = tuple((float(one), float(other)) for one, other in given)
+        if any(after[0] <= before[0] for before, after in zip(curve, curve[1:], strict=False)):
+            table.fail("curve", "has angles of the log that do not grow; give its pairs in their order")
+    return {"lag_s": _lag(table), "rate_limit_rad_per_s": limit, "curve": curve}
 
 
 def _column(table: Table, key: str) -> Column:
@@ -293,7 +325,7 @@ def quantity_of(table: Table, name: str, count: int | None, form: str) -> Quanti
         table.text("rows", ""), table.text("time", "") if form == "mat" else "",
         *_topic(table, name, form))
     if name == STEERING:
-        found = replace(found, hinges=_hinges(table, len(members) or length))
+        found = replace(found, hinges=_hinges(table, len(members) or length), **_following(table))
     table.done()
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,8 @@ from laconic.robot.bags.samples import check_sizes
 from laconic.robot.logs import poses
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.for_vehicle import spread
-from laconic.robot.logs.log import LEAST_SAMPLES, MEMBERS, PER_WHEEL, STEERING, Counter, Log
-from laconic.robot.logs.quantity import OF_ANGLE, YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
+from laconic.robot.logs.log import COMMANDED, LEAST_SAMPLES, MEMBERS, PER_WHEEL, STEERING, Counter, Following, Log
+from laconic.robot.logs.quantity import COMMAND, OF_ANGLE, YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
 from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
 from laconic.robot.logs.text_table import metadata_number, metadata_of
@@ -34,7 +35,7 @@ from laconic.robot.logs.wraps import (
 HALF_TURN = np.pi
 PARTS = ("x", "y", "heading")     # of a pose
 MOST = {"pose": 1e9, YAW_RATE: 1e6, STEERING: 1e6, "wheel_angle": 1e15, "wheel_speed": 1e6, "set_speed": 1e6,
-        "current": 1e9, "voltage": 1e9}
+        "current": 1e9, "voltage": 1e9, COMMANDED: 1e6}
 """In SI units: beyond it a number is a fault of the log or of the map, whatever the robot."""
 
 
@@ -44,7 +45,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     reader = _Reader(source, columns)
     wheels = [reader.at_wheel(columns.quantities[name]) for name in (*PER_WHEEL, STEERING)
               if name in columns.quantities]
-    others = [reader.yaw_rate(columns.quantities.get(YAW_RATE)), reader.pose(columns.quantities.get("pose"))]
+    others = [reader.single(columns.quantities.get(YAW_RATE)), reader.single(columns.quantities.get(COMMANDED)),
+              reader.pose(columns.quantities.get("pose"))]
     sampled = [each for each in (*wheels, *others) if each is not None]
     chosen = choose(source.time_s, sampled, source.is_row, source.hold_s, source.lines,
                     tells_gaps=source.tells_gaps)
@@ -61,6 +63,9 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
         found["yaw_rate_rad_per_s"] = chosen.values[YAW_RATE][:, 0]
     if STEERING in chosen.values:
         found |= {"steering_angle_rad": chosen.values[STEERING], "hinge_names": columns.quantities[STEERING].hinges}
+    if COMMANDED in chosen.values:
+        found["speed_m_per_s"] = chosen.values[COMMANDED][:, 0]
+    found["following"] = _following(columns)
     remarks = (*source.remarks, *reader.remarks, *chosen.remarks)
     is_ordered = any(quantity.wheels for quantity in columns.quantities.values())
     by_radius = tuple(member for name, member in MEMBERS.items()
@@ -71,6 +76,13 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     pose = next((each for each in sampled if each.name == "pose" and each.name in chosen.values), None)
     return log if pose is None else poses.with_pose(log, columns.quantities["pose"], pose, chosen.values["pose"],
                                                source.time_s, chosen.rows)
+
+
+def _following(columns: ColumnMap) -> Following:
+    steering, speed = columns.quantities.get(STEERING), columns.quantities.get(COMMANDED)
+    speed_lag_s = 0.0 if speed is None else speed.lag_s
+    return Following(speed_lag_s=speed_lag_s) if steering is None else Following(
+        steering.kind == COMMAND, steering.lag_s, steering.rate_limit_rad_per_s, steering.curve, speed_lag_s)
 
 
 class _Reader:
@@ -117,7 +129,7 @@ class _Reader:
             raise BadInput(f"{self.source.path}: {self.source.place(row)}: {quantity.name} is too large in SI units "
                            f"({self._label(quantity, column, values.shape[1])}{values[row, column]:.3g}, more than "
                            f"{most:g}); correct the line, or the units and scales in the map")
-        return Sampled(quantity.name, values, quantity.is_optional)
+        return Sampled(quantity.name, values, quantity.is_optional, quantity.kind == COMMAND)
 
     def _label(self, quantity: Quantity, column: int, width: int) -> str:
         """Which column one of the values of a quantity is from."""
@@ -197,10 +209,15 @@ class _Reader:
                            f"it, or the number of {unit} after which the column begins again")
         return np.inf if quantity.radius_m is None else 2.0 * np.pi * quantity.radius_m / length
 
-    def yaw_rate(self, quantity: Quantity | None) -> Sampled | None:
-        """Of a gyro."""
+    def single(self, quantity: Quantity | None) -> Sampled | None:
+        """Of a gyro, or a commanded speed."""
         found = None if quantity is None else self._raw(quantity)
-        return None if quantity is None or found is None else self._usable(quantity, poses.scaled(quantity, found[0]))
+        if quantity is None or found is None:
+            return None
+        if quantity.name == COMMANDED:  # what stands stays: the offset is in the direction of the command
+            plain = poses.scaled(replace(quantity, offsets=(0.0,)), found[0])
+            return self._usable(quantity, plain + np.sign(plain) * quantity.offsets[0])
+        return self._usable(quantity, poses.scaled(quantity, found[0]))
 
     def pose(self, quantity: Quantity | None) -> Sampled | None:
         """The true pose in the world, or its positions alone."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from laconic.robot.logs.log import LEAST_SAMPLES, counted
 
-HELD = ("voltage", "set_speed")
+HELD = ("voltage", "set_speed", "speed")
 WORTH = 0.5             # of the rows: a quantity that may be absent and leaves fewer is left out itself
 
 
@@ -24,11 +24,12 @@ class Sampled:
     name: str
     values: np.ndarray          # samples × columns
     is_optional: bool = False
+    is_command: bool = False
 
     @property
     def is_held(self) -> bool:
         """Whether it keeps its value until the next sample."""
-        return self.name in HELD
+        return self.is_command or self.name in HELD
 
     @property
     def has_gaps(self) -> bool:

@@ -21,7 +21,7 @@ OF_WHEEL = ("wheel_angle", "wheel_speed", "set_speed")
 
 OF_QUANTITY = {
     "time": (TIME,), "set_speed": (SPEED,), "wheel_angle": (ANGLE,), "wheel_speed": (SPEED,), "current": (CURRENT,),
-    "voltage": (VOLTAGE,), "yaw_rate": (SPEED,), "steering_angle": (ANGLE,),
+    "voltage": (VOLTAGE,), "yaw_rate": (SPEED,), "steering_angle": (ANGLE,), "speed": (PATH_SPEED,),
     "pose": (LENGTH, LENGTH, ANGLE)}
 """The units of each quantity; of a pose one for each of x, y and heading."""
 

@@ -78,7 +78,8 @@ def hidden_wraps(name: str, values: np.ndarray, unwrapped: np.ndarray, time_s: n
     it turned there is taken as the shorter way. `wrap`: its modulus, and as the map has it."""
     modulus, said = wrap
     apart_s = np.diff(time_s)
-    hidden = np.flatnonzero((np.abs(np.diff(values)) > 0.5 * modulus) & (apart_s > LONG * np.median(apart_s)))
+    hidden = np.flatnonzero((np.abs(np.diff(values)) > 0.5 * modulus) & (apart_s > LONG * np.median(apart_s))) if len(
+        apart_s) else np.zeros(0, int)
     if not len(hidden):
         return None
     first, more = int(hidden[0]), f", and so {len(hidden) - 1} times more" if len(hidden) > 1 else ""

@@ -15,6 +15,7 @@ from laconic.robot.logs.for_vehicle import for_vehicle
 from laconic.robot.logs.log import POINTS
 from laconic.robot.logs.wraps import REMEDY
 from laconic.robot.replay.rolling import Rolling, rolling_of, rotations_of
+from laconic.robot.replay.steered_signals import parts_of
 from laconic.scene import Scene
 
 HALF = 0.5       # of the range: a turn that is longer is read as another one
@@ -27,6 +28,8 @@ CLEARLY = 0.2    # of the range, that wheels must contradict each other by
 
 def fitting(scene: Scene, logs: Sequence[Log]) -> list[Log]:
     """The logs for the scene's vehicle; a remark names the first row whose counter missed a part of its range."""
+    if scene.has_hinges:
+        return [part for log in logs for part in parts_of(_examined(scene, for_vehicle(log, scene.vehicle)))]
     return [_examined(scene, for_vehicle(log, scene.vehicle)) for log in logs]
 
 

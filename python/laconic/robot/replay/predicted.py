@@ -18,6 +18,8 @@ from laconic.robot.replay.measures import RunErrors, path_errors
 from laconic.robot.replay.placing import fitted_to, start_of
 from laconic.robot.replay.rolling import rolling_of
 from laconic.robot.replay.steered_rolling import SteeredRolling
+from laconic.robot.replay.steered_signals import begun_at, late, of_log
+from laconic.robot.replay.steered_slip import SteeredSlip
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
@@ -43,7 +45,8 @@ def _predictor(scene: Scene, inputs: str) -> Callable[[str, Log], Prediction]:
     core = scene.core()
     if inputs == "wheel-speeds" and not slips(scene.vehicle):
         rolling = rolling_of(core, scene.vehicle, scene.path)
-        return lambda name, log: _with_path(name, log, rolling.path(log))
+        lag_s = of_log(scene.vehicle).clock_lag_s
+        return lambda name, log: _with_path(name, log, _delayed(log, rolling.path(log), lag_s))
     if inputs == "wheel-speeds":
         return lambda name, log: _held(core, scene, name, log)
     if inputs == "set-speeds" and scene.speed_controller is None:
@@ -61,8 +64,16 @@ def _steered(scene: Scene, inputs: str) -> Callable[[str, Log], Prediction]:
     if inputs != "wheel-speeds":
         raise BadInput(f"{scene.path}: --inputs {inputs} does not take vehicles with hinges yet; take --inputs "
                        "wheel-speeds, with [steering_angle] in the map")
-    rolling = SteeredRolling(scene)
+    rolling = (SteeredSlip if slips(scene.vehicle) else SteeredRolling)(scene)
     return lambda name, log: _with_path(name, log, rolling.path(log))
+
+
+def _delayed(log: Log, path: np.ndarray, lag_s: float) -> np.ndarray:
+    """What a tracker saw whose poses are late."""
+    if lag_s == 0.0:
+        return path
+    seen = late(path, log.time_s, log.time_s, lag_s)
+    return begun_at(seen, start_of(log)) if log.has_heading or log.pose is None else fitted_to(log, seen)
 
 
 def _with_path(name: str, log: Log, path: np.ndarray) -> Prediction:

@@ -24,6 +24,8 @@ MOST_PANELS = 12
 SAID = {
     "wheel-speeds": "the recorded rotation of the wheels, rolled without slip",
     "steered": "the recorded rotation of the wheels at the recorded steering angles, rolled without slip",
+    "steered with friction": "the recorded rotation of the wheels, or the commanded speed, at the recorded steering "
+                             "angles, on ground with friction",
     "held": "the recorded rotation of the wheels, held by strong motors on ground with friction",
     "currents": "the recorded currents, as torques",
     "voltages": "the recorded voltages",
@@ -86,7 +88,7 @@ def _said(found: RolledPaths) -> str:
     if found.inputs != "wheel-speeds":
         return SAID[found.inputs]
     if found.scene.has_hinges:
-        return SAID["steered"]
+        return SAID["steered with friction" if slips(found.scene.vehicle) else "steered"]
     return SAID["held"] if slips(found.scene.vehicle) else SAID["wheel-speeds"]
 
 
