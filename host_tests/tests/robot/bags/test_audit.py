@@ -228,3 +228,16 @@ def test_a_recorded_tricycle_is_audited_by_its_map_alone(tmp_path, capsys):
     fitted = {each["name"]: each["value"] for each in found["fit"]["parameters"]}
     assert 1.4 * fitted["distance of the wheels, factor"] == pytest.approx(1.51, abs=0.03)
     assert 1.5 + fitted["place of the tracker, x"] == pytest.approx(1.78, abs=0.03)
+
+
+CAR = recorded("f1tenth")
+
+
+@pytest.mark.skipif(not CAR.is_dir(), reason="recorded runs are not here")
+def test_a_recorded_car_is_audited_by_the_map_that_is_guessed(tmp_path, capsys):
+    log, mapping = CAR / "skidpad_ccw_clean_v_0_5_d_0_416.csv", tmp_path / "map.toml"
+    assert run(["logs", str(log), "--scene", "f1tenth", "-o", str(mapping)]) == 0
+    assert 'kind = "command"' in mapping.read_text() and 'column = "command_speed_m_per_s"' in mapping.read_text()
+    capsys.readouterr()
+    found = audited(capsys, log, mapping, Path("f1tenth"))
+    assert found["nominal"] > 0.1 and found["found"] < 0.005
