@@ -155,7 +155,7 @@ def steered_log(folder: Path, kind: str, *, radius: float = 1.0, base: float = 1
     rolled = [way] if kind == "tricycle" else [ahead - side * HALF_M * base * turn for side in (1.0, -1.0)]
     wheels = [np.concatenate([[0.0], np.cumsum(each)]) / (radius * WHEEL_M) for each in rolled]
     names = [f"wheel{number}" for number in range(len(wheels))]
-    rows = np.column_stack([time, *wheels, told, pose])[::60]
+    rows = np.column_stack([time, *wheels, told, pose])[::20]
     lines = [",".join(["t", *names, "steering_rad", "x", "y", "yaw"]),
              *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]
     (folder / "run.csv").write_text("\n".join(lines) + "\n")
@@ -228,3 +228,16 @@ def test_a_recorded_tricycle_is_audited_by_its_map_alone(tmp_path, capsys):
     fitted = {each["name"]: each["value"] for each in found["fit"]["parameters"]}
     assert 1.4 * fitted["distance of the wheels, factor"] == pytest.approx(1.51, abs=0.03)
     assert 1.5 + fitted["place of the tracker, x"] == pytest.approx(1.78, abs=0.03)
+
+
+CAR = recorded("f1tenth")
+
+
+@pytest.mark.skipif(not CAR.is_dir(), reason="recorded runs are not here")
+def test_a_recorded_car_is_audited_by_the_map_that_is_guessed(tmp_path, capsys):
+    log, mapping = CAR / "skidpad_ccw_clean_v_0_5_d_0_416.csv", tmp_path / "map.toml"
+    assert run(["logs", str(log), "--scene", "f1tenth", "-o", str(mapping)]) == 0
+    assert 'kind = "command"' in mapping.read_text() and 'column = "command_speed_m_per_s"' in mapping.read_text()
+    capsys.readouterr()
+    found = audited(capsys, log, mapping, Path("f1tenth"))
+    assert found["nominal"] > 0.1 and found["found"] < 0.005

@@ -224,3 +224,39 @@ def test_a_name_of_a_file_that_is_not_written_is_refused_with_those_that_are(nam
     error = capsys.readouterr().err
     assert "is not written; choose NAME.mcap for one file, or a name without an ending" in error
     assert error.count("\n") == 1 and not (tmp_path / name).exists()
+
+
+@pytest.mark.parametrize("scene", ["kuka_youbot", "optiodom_omni3", "paper_differential_drive"])
+def test_a_simulated_bag_is_not_said_to_lack_something(scene, tmp_path, capsys):
+    bag = recorded(tmp_path, "run.mcap", Path(scene))
+    capsys.readouterr()
+    assert run(["identify", str(bag), "--scene", scene, "--json", "-o", str(tmp_path / "fitted.toml")]) == 0
+    found = json.loads(capsys.readouterr().out)
+    words = " ".join(found["words"])
+    assert "lacks something" not in words and "err alike" not in words
+    assert all(each["low"] <= each["nominal"] <= each["high"] for each in found["parameters"])
+    assert "/wheel_voltages: messages have no stamps" in words  # and it is not said to be joined by them
+    joined, = (each for each in found["words"] if "/wheel_voltages" in each and "joined" in each)
+    assert "joined to the rows by their instants of arrival" in joined
+
+
+def test_an_audit_of_a_simulated_bag_says_that_the_scene_is_right(tmp_path, capsys):
+    bag = recorded(tmp_path, "run.mcap", Path("kuka_youbot"))
+    capsys.readouterr()
+    assert run(["audit", str(bag), "kuka_youbot"]) == 0
+    page = capsys.readouterr().out
+    assert "no more than sampling and rounding of the logs make: the scene's numbers are right" in page
+    assert "lacks something" not in page.partition("## What the fit states")[2] and "slip or drag there" not in page
+
+
+@pytest.mark.parametrize("scene", ["tricycle_agv", "f1tenth"])
+def test_a_bag_of_a_steered_vehicle_replays_and_is_audited_without_a_map(scene, tmp_path, capsys):
+    bag = recorded(tmp_path, "run.mcap", Path(scene))
+    capsys.readouterr()
+    assert run(["logs", str(bag), "--scene", scene]) == 0
+    assert "_hinge_joint]" in capsys.readouterr().out
+    assert run(["replay", str(bag), scene, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-3
+    assert run(["audit", str(bag), scene, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["found"] <= found["nominal"] < 1e-3

@@ -190,3 +190,15 @@ def test_true_nominal_and_identified_paths_are_drawn(tmp_path, capsys):
     picture = tmp_path / "paths.png"
     assert run(["identify", str(one), "--scene", "turtlebot3_burger", "--plot", str(picture)]) == 0
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_poor_fit_is_not_said_to_tell_every_parameter(monkeypatch):
+    scene, random = read_scene("optiodom_diff"), np.random.default_rng(6)
+    logs = [made_up(scene.core(), scene.vehicle, Path(f"/made-up/day{i}/run.csv"), random) for i in range(3)]
+
+    def words():
+        return identify(scene, logs, geometry_of(scene, ("radius", "distance"))).words
+
+    assert any(word.startswith("The runs tell every parameter") for word in words())
+    monkeypatch.setattr("laconic.robot.identify.study.of_errors", lambda *_: ["The fit is poor."])
+    assert words()[-1] == "The fit is poor." and not any("every parameter better" in word for word in words())

@@ -91,6 +91,15 @@ def test_degrees_signs_and_scales_of_steering_are_taken(tmp_path, capsys):
     assert replayed(tmp_path, table, 'unit = "deg"\nsign = -1\nscale = 0.5', capsys) < 1e-5
 
 
+def test_steering_of_the_other_sense_is_called_a_poor_fit(tmp_path, capsys):
+    table = motion()
+    table[:, 2] *= -1.0
+    assert replayed(tmp_path, table, "", capsys) > 0.1
+    assert run(["replay", str(tmp_path / "run.csv"), str(tmp_path / "robot.toml"), "--map",
+                str(tmp_path / "map.toml")]) == 0
+    assert "the fit is poor" in (text := capsys.readouterr().out) and "with the sign of the steering reversed" in text
+
+
 def test_one_angle_steers_both_wheels_of_a_car_about_one_centre(tmp_path, capsys):
     """Both rear wheels roll as the middle of their axle and the turn about it say."""
     table = motion()

@@ -23,6 +23,7 @@ from laconic.scene.base import usual_joints
 
 WORTH_A_LINE = 0.002    # of a radius
 SLIPS, DEVIATIONS = 0.02, 2.0   # of true over rolled motion: what is beyond both it and so many standard errors
+ROUNDING = 1e-4         # path error of a log of the model itself, at most
 PARALLEL_RAD = 0.02     # between axles that count as one direction
 
 
@@ -142,6 +143,9 @@ def as_text(found: Audit, picture: str | None = None) -> str:
     lines = [f"# Audit of {found.scene.name}, from {counted(len(found.logs), 'run')}", "",
              f"The wheels' odometry is off by **{100 * found.nominal:.3f} %** of the way with the scene's numbers, and "
              f"by **{100 * found.found:.3f} %** with those found.", ""]
+    if found.nominal < ROUNDING:
+        lines += ["That is no more than sampling and rounding of the logs make: the scene's numbers are right, and the "
+                  "shares below are of that rest alone.", ""]
     if picture is not None:
         lines += [f"![{picture}]({picture})", ""]
     lines += ["| cause | share of the squared error [%] | path error that it makes alone [%] | found |",

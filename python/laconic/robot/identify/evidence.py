@@ -12,6 +12,7 @@ from laconic.robot.identify import ground, motion
 from laconic.robot.identify.ground import GroundEvidence, base_of
 from laconic.robot.identify.gyro import GyroEvidence, turned
 from laconic.robot.identify.parameter import Parameters
+from laconic.robot.identify.resolution import floor_of_all
 from laconic.robot.identify.rolling_evidence import RollingEvidence
 from laconic.robot.identify.solve import Evidence
 from laconic.robot.identify.steered_evidence import SteeredEvidence
@@ -54,7 +55,12 @@ def evidence_of(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> Ev
         return _moved(scene, logs, parameters)
     if kind == "turn" and not slips(base):
         return GyroEvidence(scene.core(), scene.path, logs)
-    return (GroundEvidence if slips(base) else RollingEvidence)(scene.core(), scene.path, logs)
+    if slips(base):
+        return GroundEvidence(scene.core(), scene.path, logs)
+    found = RollingEvidence(scene.core(), scene.path, logs)
+    rolling = rolling_of(scene.core(), scene.vehicle, scene.path)
+    found.floor = floor_of_all(rolling.path, logs, found.runs, rolling.per_rotation)
+    return found
 
 
 def _moved(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> motion.MotionEvidence:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from laconic.robot.replay.measures import LEAST_LENGTH_M, path_length
 from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import path_of, rolling_of
 from laconic.robot.replay.steered_signals import begun_at, late, of_log
+
+if TYPE_CHECKING:
+    from laconic.robot.identify.resolution import Floor
 
 POINTS = 120      # of a path that are compared
 STRETCHES = 24    # of a run whose errors count as independent
@@ -57,6 +61,7 @@ class RollingEvidence:
 
     directions: float = 2
     difference = 0.0
+    floor: Floor | None = None     # of errors: what sampling and rounding make
     by_wheels = True
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
@@ -124,7 +129,7 @@ def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarr
 def stretch_errors(run: Run, path: np.ndarray) -> np.ndarray:
     """What the motion of each stretch is off by, in the body's frame at its beginning."""
     true = run.pose if run.has_heading else with_headings(run.pose, path, run.cuts)
-    return _relative(path, run.cuts) - _relative(true, run.cuts)
+    return relative(path, run.cuts) - relative(true, run.cuts)
 
 
 def with_headings(pose: np.ndarray, path: np.ndarray, cuts: np.ndarray) -> np.ndarray:
@@ -140,7 +145,7 @@ def with_headings(pose: np.ndarray, path: np.ndarray, cuts: np.ndarray) -> np.nd
     return found
 
 
-def _relative(pose: np.ndarray, cuts: np.ndarray) -> np.ndarray:
+def relative(pose: np.ndarray, cuts: np.ndarray) -> np.ndarray:
     """Displacement of each stretch in the body's frame at its beginning, and turn."""
     step, heading = np.diff(pose[cuts], axis=0), pose[cuts[:-1], 2]
     cos, sin = np.cos(heading), np.sin(heading)

@@ -32,6 +32,7 @@ FAR_FROM_SETTLED = 0.2
 ROUGHLY_SETTLED = 0.01
 SETTLED = 1e-3       # relative change of σ
 SAME_WEIGHT = 0.02
+BEYOND = 3.0         # times the floor of the stretches' errors: what is less is sampling and rounding
 SMALLEST_SCALE = 1e-9
 STEP = 1e-4          # of z, for derivatives
 UNTOLD = 0.99        # a parameter whose sd is more than this share of the prior's is not told by the runs
@@ -131,12 +132,14 @@ def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
         return np.concatenate([block * factor for block, factor in zip(blocks, factors, strict=True)])
 
-    scale = _scale(stacked(z, np.sqrt(in_session)), freedom)
+    least = _least_scale(evidence)
+    scale = _scale(stacked(z, np.sqrt(in_session)), freedom, least)
     for _ in range(MOST_ROUNDS):
         factors = np.sqrt(in_session * weights)
         z = _least(base, parameters, evidence, z, factors, scale, stacked)
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
-        before, scale = scale, _scale(np.concatenate([b * f for b, f in zip(blocks, factors, strict=True)]), freedom)
+        weighted = np.concatenate([block * factor for block, factor in zip(blocks, factors, strict=True)])
+        before, scale = scale, _scale(weighted, freedom, least)
         change, taken = abs(scale / before - 1.0), weights
         if change < FAR_FROM_SETTLED:  # before, what a strong prior leaves of a run is no outlier
             weights = _huber(np.array([np.sqrt(block @ block / (len(block) if counts else 1)) for block in blocks]))
@@ -163,8 +166,15 @@ def _least(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: 
     return found
 
 
-def _scale(residual: np.ndarray, freedom: float) -> float:
-    return max(float(np.sqrt(residual @ residual / freedom)), SMALLEST_SCALE)
+def _least_scale(evidence: Evidence) -> float:
+    """σ that sampling and rounding of the logs make."""
+    floor = getattr(evidence, "floor", None)
+    return SMALLEST_SCALE if floor is None else max(SMALLEST_SCALE, floor.path_error)
+
+
+def _scale(residual: np.ndarray, freedom: float, least: float) -> float:
+    """σ; `least`: what sampling and rounding make, below which an error tells nothing."""
+    return max(float(np.sqrt(residual @ residual / freedom)), least)
 
 
 def _huber(errors: np.ndarray) -> np.ndarray:
@@ -199,8 +209,8 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
     numbers = sum(len(jacobian) for jacobian in jacobians)  # a fit of the stretches themselves makes these smaller
     own = numbers / max(numbers - count, 1) if getattr(evidence, "counts_stretches", False) else 1.0
     plain = widest = half_widths(single)
-    likeness, is_found = likeness_of(_unexplained(base, parameters, evidence, z))
-    is_found &= scale > SMALLEST_SCALE  # rounding repeats, too
+    likeness, is_found = likeness_of(_beyond_floor(evidence, vehicle, _unexplained(base, parameters, evidence, z)))
+    is_found &= scale > BEYOND * _least_scale(evidence)  # rounding repeats, too
     if is_found:
         widest = np.max([plain, *(half_widths(each) for each in block_sums(parts, evidence.sessions, count))], axis=0)
     structure = Structure(likeness, is_found, float((widest / plain).max(initial=1.0)))
@@ -214,6 +224,15 @@ def _unexplained(base: dict[str, Any], parameters: Parameters, evidence: Evidenc
     if evidence.difference or not len(parameters):
         return errors
     return unexplained(errors, differences(base, parameters, evidence.errors, z, STEP))
+
+
+def _beyond_floor(evidence: Evidence, vehicle: Vehicle, errors: list[np.ndarray]) -> list[np.ndarray]:
+    """The errors, 0 in components in which sampling and rounding of the log explain their size."""
+    floor = getattr(evidence, "floor", None)
+    if floor is None:
+        return errors
+    size = np.sqrt(np.mean(np.concatenate(evidence.errors(vehicle)) ** 2, axis=0))
+    return [each * (size > BEYOND * floor.stretch) for each in errors]
 
 
 def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> list[np.ndarray]:

@@ -10,6 +10,7 @@ import copy
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,10 +19,11 @@ from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput
 from laconic.robot.identify.geometry import ANGLE_SD_RAD, RELATIVE_SD
 from laconic.robot.identify.parameter import Parameter, Parameters, Vehicle
+from laconic.robot.identify.resolution import floor_of_all
 from laconic.robot.identify.rolling_evidence import path_residual, run_of, stretch_errors, stretch_scores
 from laconic.robot.identify.solve import Fit, fit
 from laconic.robot.identify.study import Study
-from laconic.robot.identify.words import in_words
+from laconic.robot.identify.words import in_words, with_errors
 from laconic.robot.identify.words_of_errors import of_errors
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import remarks_of, run_names
@@ -110,7 +112,7 @@ class SteeredModel:
         after = found.parameters.vehicle(self.scene.vehicle, found.values)
         study = Study(self.scene, list(runs), found, in_words(self.scene, found, runs),
                       self._errors(self.scene.vehicle, runs), self._errors(after, runs), [], [], [])
-        return replace(study, words=[*remarks_of(runs), *study.words, *of_errors(study, ())])
+        return replace(study, words=[*remarks_of(runs), *with_errors(study.words, of_errors(study, ()))])
 
     def _errors(self, vehicle: Vehicle, runs: Sequence[Log]) -> list[RunErrors]:
         return [path_errors(name, log, self.path(vehicle, log))
@@ -173,6 +175,7 @@ class _Evidence:
         self.sessions = [str(log.path.resolve().parent) for log in logs]
         self._model, self._logs = model, logs
         self._runs = [run_of(log, by_wheels=False) for log in logs]
+        self.floor = floor_of_all(partial(model.path, model.scene.vehicle), logs, self._runs)
 
     def _paths(self, vehicle: Vehicle) -> list[np.ndarray]:
         return [self._model.path(vehicle, log) for log in self._logs]

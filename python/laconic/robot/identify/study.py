@@ -14,7 +14,7 @@ from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, fit, values_by_name
 from laconic.robot.identify.steered import SLIPPING
 from laconic.robot.identify.steered_evidence import SteeredEvidence
-from laconic.robot.identify.words import in_words
+from laconic.robot.identify.words import in_words, with_errors
 from laconic.robot.identify.words_of_errors import of_errors
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import remarks_of, run_names
@@ -73,7 +73,7 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
                   errors_of(fitted, runs, parameters), left, errors_of(fitted, others, parameters) if others else [],
                   errors_of(scene, others, parameters) if others else [], controller,
                   MEASURE[kind_of(runs, parameters)], without)
-    return replace(study, words=[*remarks_of([*runs, *others]), *study.words, *of_errors(study, others)])
+    return replace(study, words=[*remarks_of([*runs, *others]), *with_errors(study.words, of_errors(study, others))])
 
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:

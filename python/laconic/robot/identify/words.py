@@ -24,6 +24,7 @@ from laconic.scene.ground import slips
 
 WEAK = 1.0            # information in units of the prior: below it the runs say less than was known beforehand
 PARTS = 0.35          # a parameter is named where its share in a combination is at least so much of the largest
+TELLS_ALL = "The runs tell every parameter better than it was known before."
 STEERED = ("log.", "vehicle.", "ground.")   # paths of parameters of steered vehicles; those of an audit differ
 HELPS = 0.9           # of the uncertainty: a run that leaves more is no advice
 SAMPLES, PERIOD_S = 200, 0.05
@@ -50,7 +51,12 @@ def in_words(scene: Scene, found: Fit, runs: Sequence[Log]) -> list[str]:
     if found.weights.min() < 1.0:
         words.append(f"{int((found.weights < 1.0).sum())} of {len(found.weights)} runs are far worse than the others "
                      f"and count less (the least by a factor of {found.weights.min():.2g}).")
-    return words or ["The runs tell every parameter better than it was known before."]
+    return words or [TELLS_ALL]
+
+
+def with_errors(words: Sequence[str], errors: Sequence[str]) -> list[str]:
+    """Both; errors take the place of the sentence that all is well."""
+    return [*(word for word in words if word != TELLS_ALL or not errors), *errors]
 
 
 def _at_bounds(found: Fit) -> list[tuple[str, float]]:

@@ -344,7 +344,8 @@ def _age(samples: Samples, is_main: bool) -> str:
     age = (samples.arrival_ns - samples.stamp_ns) / 1e9
     if not len(apart):
         return f"{samples.topic}: 1 message"
-    how = "each of them one row" if is_main else "joined to the rows by their stamps"
+    by = "stamps" if samples.has_stamps else "instants of arrival"
+    how = "which make the rows" if is_main else f"joined to the rows by their {by}"
     text = (f"{samples.topic}: {len(age)} messages, {how}, {np.median(apart):.3g} s apart in the median and "
             f"{apart.max():.3g} s at most")
     if samples.has_stamps and np.abs(age).max() > OFTEN:

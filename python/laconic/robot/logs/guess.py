@@ -82,6 +82,8 @@ def _steering(found: Guess, columns: Mapping[str, np.ndarray]) -> None:
         "deg" if largest > HALF_TURN_DEG else "rad")
     _enter(found, columns, "steering_angle", unit, sure)
     entry = found.entries["steering_angle"]
+    if words & ASKED:
+        entry["kind"] = "command"
     if unit == "tick" and "wrap" not in entry and (wraps := [size for name in sure if (size := _begins_again(
             columns[name]))]):
         entry["wrap"] = max(wraps)
@@ -100,6 +102,13 @@ def _steering(found: Guess, columns: Mapping[str, np.ndarray]) -> None:
             _enter(found, columns, quantity[0], quantity[1], [name])
             found.missing = [each for each in found.missing if not each.startswith("wheels:")]
             return
+    asked = [name for name in columns if set(words_of(name)) & ASKED and set(words_of(name)) & {"speed", "vel"}
+             and not set(words_of(name)) & {"yaw", "angular", "left", "right"}]
+    if len(asked) == 1:
+        found.entries["speed"] = {"column": asked[0]}
+        found.meaning[asked[0]] = "speed [m/s]"
+        found.missing = [each for each in found.missing if not each.startswith("wheels:")]
+        found.notes.append(f"speed: {asked[0]} is taken for the commanded speed of the fixed axle, in m/s")
 
 
 def _begins_again(values: np.ndarray) -> int | None:

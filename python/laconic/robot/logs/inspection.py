@@ -26,7 +26,7 @@ from laconic.robot.bags.samples import (
 from laconic.robot.logs.bag_source import POSES, own_name, read_mat
 from laconic.robot.logs.column_map import ColumnMap, map_of
 from laconic.robot.logs.for_vehicle import corner_of, places_by_name, words_of
-from laconic.robot.logs.guess import TRUE, UNTRUE, Guess, guess_table, toml_text
+from laconic.robot.logs.guess import STEERED, TRUE, UNTRUE, Guess, guess_table, toml_text
 from laconic.robot.logs.recognise import OF_CAN
 from laconic.robot.logs.text_table import number_of, rows_of, text_of
 from laconic.scene.table import Table
@@ -35,6 +35,7 @@ BEST = ("Odometry", "PoseStamped", "PoseWithCovarianceStamped", "PoseInFrame", "
         "Transform", "NavSatFix", "PointStamped", "Point", "Vector3Stamped")
 NEVER = {"goal", "initialpose", "initial", "target", "plan", "cmd", "command"}
 VOLTAGES = "/wheel_voltages"     # of `laconic simulate --bag`
+OF_HINGES = "_hinge_joint"       # behind the name of a hinge, as ROS 2 and bags have it
 OF_WHEELS = {"wheel", "wheels", "drive", "motor"}
 
 
@@ -78,8 +79,9 @@ def _joints(found: Guess, parts: Sequence[Recording], topics: Mapping[str, Topic
     ranked: list[tuple[int, int, str, tuple[str, ...], Any]] = []
     for index, (topic, message) in enumerate(sample_messages(parts, names).items()):
         joints = [str(each) for each in (message.get("name", []) if isinstance(message, dict) else message.name)]
-        wheels = [each for each in joints if OF_WHEELS & set(words_of(each))] or [
-            each for each in joints if corner_of(each) != ("", "")] or joints
+        turning = [each for each in joints if not each.endswith(OF_HINGES) and not STEERED & set(words_of(each))]
+        wheels = [each for each in turning if OF_WHEELS & set(words_of(each))] or [
+            each for each in turning if corner_of(each) != ("", "")] or turning
         score = sum(bool(OF_WHEELS & set(words_of(each))) for each in wheels) + len(wheels)
         ranked.append((-score, index, topic, tuple(wheels), message))
     if not ranked or not min(ranked, key=lambda each: each[:2])[3]:
@@ -89,11 +91,25 @@ def _joints(found: Guess, parts: Sequence[Recording], topics: Mapping[str, Topic
     _, _, topic, found.wheels, message = min(ranked, key=lambda each: each[:2])
     found.entries |= {"joints": topic, "wheels": list(found.wheels)}
     found.meaning[topic] = f"wheels {', '.join(found.wheels)}"
+    _hinges(found, topic, [str(each) for each in (message["name"] if isinstance(message, dict) else message.name)])
     values = list(message["position"] if isinstance(message, dict) else message.position)
     if values and all(float(value) % 1.0 == 0.0 for value in values) and any(abs(value) > 50.0 for value in values):
         found.notes.append(f"joints: the positions of {topic} are whole numbers, which looks like ticks; give them as "
                            f'columns under [wheel_angle], such as "{topic}.position[{found.wheels[0]}]", with unit = '
                            '"tick" and ticks_per_turn')
+
+
+def _hinges(found: Guess, topic: str, joints: Sequence[str]) -> None:
+    """Angles of the scene's hinges by their names, as its own bags have them; else joints that steer."""
+    named = [each for each in joints if each.endswith(OF_HINGES)]
+    steering = named or [each for each in joints if STEERED & set(words_of(each)) and each not in found.wheels]
+    if not steering:
+        return
+    entry: dict[str, Any] = {"columns": [f"{topic}.position[{each}]" for each in steering], "optional": True}
+    if named:
+        entry["hinges"] = [each.removesuffix(OF_HINGES) for each in named]
+    found.entries["steering_angle"] = entry
+    found.meaning[topic] += f"; steering {', '.join(steering)}"
 
 
 def _other_wheels(found: Guess, parts: Sequence[Recording], topics: Mapping[str, Topic]) -> None:
