@@ -149,8 +149,8 @@ def test_the_list_above_has_every_command_that_takes_a_scene() -> None:
              for path in (SOURCE_DIR / "python/laconic/cli/commands").glob("*.py")}
     takes = {name for name, text in texts.items() if "SceneName(" in text}
     with_hinges = {name for name, text in texts.items() if "SceneName(hinges=True)" in text}
-    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "trim", "ros2", "rig", "play", "replay", "identify", "audit",
-                           "logs", "frc"}
+    assert with_hinges == {"simulate", "fmu", "analyse", "derive", "trim", "ros2", "rig", "play", "replay",
+                           "identify", "audit", "logs", "frc"}
     assert takes - with_hinges == {*ELSEWHERE}
 
 
