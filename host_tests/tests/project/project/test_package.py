@@ -204,7 +204,8 @@ def test_what_the_package_needs_anyway_belongs_to_no_extra():
     assert extra_of("numpy") == ""
 
 
-NOT_LOCKED = {"asammdf", "rerun-sdk"}  # one slows each start of python-can by a second, the other has 170 MB
+NOT_LOCKED = {"asammdf", "rerun-sdk", "pyfrc", "robotpy"}
+"""The first slows each start of python-can by a second; the others have more than 100 MB."""
 
 
 def test_the_lock_is_made_from_what_the_package_needs():
