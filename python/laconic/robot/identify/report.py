@@ -63,6 +63,12 @@ def mean_error(errors: list[RunErrors], measure: str) -> float:
     return float("nan") if value is None else float(value)
 
 
+def _without_slip(study: Study) -> list[tuple[str, list[RunErrors]]]:
+    other = study.without_slip
+    return [] if other is None else [("rolling", other.fitted), ("rolling_left_out", other.left_out),
+                                     ("rolling_judged", other.judged)]
+
+
 def as_numbers(study: Study) -> dict[str, Any]:
     """For JSON; `runs` are those to judge, or those of the fit where there are none."""
     found = study.found
@@ -75,7 +81,7 @@ def as_numbers(study: Study) -> dict[str, Any]:
                         "high": value + half} for name, value, half in study.controller.rows()]
     means = {name: grand_mean(errors).as_json() for name, errors in (
         ("nominal", study.nominal), ("fitted", study.fitted), ("left_out", study.left_out), ("judged", study.judged),
-        ("judged_nominal", study.judged_nominal)) if errors}
+        ("judged_nominal", study.judged_nominal), *_without_slip(study)) if errors}
     return {"scene": str(study.scene.path), "parameters": parameters, "nominal_kept": list(found.untold),
             "words": study.words, "means": means, "runs": [e.as_json() for e in study.judged or study.fitted],
             "left_out": [each.as_json() for each in study.left_out]}
