@@ -3,7 +3,8 @@
     python host_tests/assurance/run.py gazebo
 
 Needs Debian's libignition-physics-dev and a C++ compiler; without them it prints one line. The reference is the core
-with a step of 0.1 ms on ideal ground. Wheels in Gazebo are spheres, which touch the ground in one point, as wheels here do.
+with a step of 0.1 ms on ideal ground. Wheels in Gazebo are spheres, which touch the ground in one point, as
+wheels here do.
 """
 
 from __future__ import annotations
@@ -67,8 +68,8 @@ def sdf_of(robot: Robot) -> str:
                   _wheel("c", f"{HINGE_M - TRAIL_M} 0 0", "fork",
                          f"<mu>{robot.friction}</mu><mu2>{robot.friction}</mu2>")]
     ground = ('<model name="ground"><static>true</static><link name="l"><collision name="c"><geometry><plane>'
-              "<normal>0 0 1</normal><size>100 100</size></plane></geometry><surface><friction><ode><mu>10</mu><mu2>10</mu2></ode>"
-              "</friction></surface></collision></link></model>")
+              "<normal>0 0 1</normal><size>100 100</size></plane></geometry><surface><friction><ode>"
+              "<mu>10</mu><mu2>10</mu2></ode></friction></surface></collision></link></model>")
     return ('<?xml version="1.0"?><sdf version="1.9" xmlns:ignition="http://ignitionrobotics.org/schema">'
             f'<world name="w"><gravity>0 0 -9.81</gravity>{ground}<model name="robot"><pose>0 0 {RADIUS_M} 0 0 0</pose>'
             f"{''.join(links)}</model></world></sdf>")
