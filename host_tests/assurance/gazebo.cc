@@ -1,7 +1,8 @@
-/* A robot of an SDF file in Gazebo's physics, driven by motors at its wheels: gazebo PLUGIN FILE STEP GAIN DAMPING JOINT …
+/* A robot of an SDF file in Gazebo's physics: gazebo PLUGIN FILE STEP MOTORS JOINT …
  *
- * Standard input has lines "until voltage …" with a voltage for each joint. Prints x, y, heading and the microseconds
- * that a step took. */
+ * The first MOTORS joints have motors, the others are steered. Standard input has one line for each step: the torques
+ * of the motors, then the angles of the steered joints at its end. Prints x, y and heading of the link "base", then the
+ * microseconds that a step took. */
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -21,14 +22,16 @@
 
 namespace physics = ignition::physics;
 
-struct Features : physics::FeatureList<physics::sdf::ConstructSdfWorld, physics::ForwardStep, physics::LinkFrameSemantics,
-                                       physics::GetModelFromWorld, physics::GetLinkFromModel,
-                                       physics::GetJointFromModel, physics::GetBasicJointState,
-                                       physics::SetBasicJointState> {};
+struct Features
+    : physics::FeatureList<physics::sdf::ConstructSdfWorld, physics::ForwardStep, physics::LinkFrameSemantics,
+                           physics::GetModelFromWorld, physics::GetLinkFromModel, physics::GetJointFromModel,
+                           physics::GetBasicJointState, physics::SetBasicJointState,
+                           physics::SetJointVelocityCommandFeature> {};
 
 int main(int count, char **words) {
-    if (count < 7) return std::fputs("gazebo PLUGIN FILE STEP GAIN DAMPING JOINT ...\n", stderr), 2;
-    const double step_s = std::atof(words[3]), gain = std::atof(words[4]), damping = std::atof(words[5]);
+    if (count < 6) return std::fputs("gazebo PLUGIN FILE STEP MOTORS JOINT ...\n", stderr), 2;
+    const double step_s = std::atof(words[3]);
+    const std::size_t motors = std::strtoul(words[4], nullptr, 10);
     ignition::plugin::Loader loader;
     loader.LoadLib(words[1]);
     const auto names = loader.PluginsImplementing<physics::ForwardStep::Implementation<physics::FeaturePolicy3d>>();
@@ -40,27 +43,28 @@ int main(int count, char **words) {
     auto world = engine->ConstructWorld(*root.WorldByIndex(0));
     auto robot = world->GetModel("robot");
     std::vector<decltype(robot->GetJoint(""))> joints;
-    for (int i = 6; i < count; ++i) joints.push_back(robot->GetJoint(words[i]));
+    for (int i = 5; i < count; ++i) joints.push_back(robot->GetJoint(words[i]));
+    std::vector<double> values;
+    for (double each; std::scanf("%lf", &each) == 1;) values.push_back(each);
     physics::ForwardStep::Input input;
     physics::ForwardStep::Output output;
     physics::ForwardStep::State state;
     input.Get<std::chrono::steady_clock::duration>() = std::chrono::nanoseconds(std::llround(step_s * 1e9));
-    std::vector<double> voltage_V(joints.size());
-    double until_s;
-    long steps = 0;
+    const std::size_t steps = values.size() / joints.size();
     const auto began = std::chrono::steady_clock::now();
-    while (std::scanf("%lf", &until_s) == 1) {
-        for (auto &each : voltage_V)
-            if (std::scanf("%lf", &each) != 1) return 2;
-        for (; steps < std::lround(until_s / step_s); ++steps) {
-            for (std::size_t i = 0; i < joints.size(); ++i)
-                joints[i]->SetForce(0, gain * voltage_V[i] - damping * joints[i]->GetVelocity(0));
-            world->Step(output, state, input);
+    for (std::size_t step = 0; step < steps; ++step) {
+        const double *given = &values[step * joints.size()];
+        for (std::size_t i = 0; i < joints.size(); ++i) {
+            if (i < motors)
+                joints[i]->SetForce(0, given[i]);
+            else
+                joints[i]->SetVelocityCommand(0, (given[i] - joints[i]->GetPosition(0)) / step_s);
         }
+        world->Step(output, state, input);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     const auto pose = robot->GetLink("base")->FrameDataRelativeToWorld().pose;
     std::printf("%.9f %.9f %.9f %.3f\n", pose.translation().x(), pose.translation().y(),
-                std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)), 1e6 * seconds / steps);
+                std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)), 1e6 * seconds / static_cast<double>(steps));
     return 0;
 }
