@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from laconic.base.paths import build_dir
 from laconic.core.articulated import ArticulatedVehicle
 from laconic.scene import Scene, read_scene
@@ -204,7 +205,8 @@ def _ball(name: str, place: str, radius_m: float, friction: str) -> str:
 
 
 def _joint(name: str, parent: str, child: str, damping: float) -> str:
-    return (f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{child}</child><axis><xyz>0 0 1</xyz>'
+    return (f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{child}</child>'
+            "<axis><xyz>0 0 1</xyz>"
             f"<dynamics><damping>{damping}</damping></dynamics><limit><lower>-1e16</lower><upper>1e16</upper></limit>"
             "</axis></joint>")
 
@@ -271,7 +273,8 @@ def angles_of(robot: Robot, step_s: float) -> np.ndarray:
     if not robot.steered:
         return np.zeros((steps, 0))
     signals = [f"hinge_angle_rad[{name}]" for name in robot.steered]
-    run = simulate(replace(robot.scene.with_step(step_s), outputs=replace(robot.scene.outputs, every_s=step_s)), signals)
+    outputs = replace(robot.scene.outputs, every_s=step_s)
+    run = simulate(replace(robot.scene.with_step(step_s), outputs=outputs), signals)
     return np.column_stack([run.columns_of(name).ravel() for name in signals])[1:]
 
 
