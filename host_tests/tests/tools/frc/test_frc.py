@@ -23,6 +23,7 @@ from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.frc import MOTORS, Bridge, Drivetrain, Robot, new_scene
 from laconic.frc.drivetrain import Axis, Battery
+from laconic.frc.engine import Engine
 from laconic.frc.new import box, mass, module_of, motor_of
 from laconic.scene.base import FrcTable
 
@@ -300,7 +301,12 @@ def test_autonomous(control, robot):
     done = robotpy(tmp_path, "test", "--", "-s")
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert "1 passed" in done.stdout
-    print(*re.findall(r"^x .*$", done.stdout, re.M))
+    printed = re.findall(r"^x .*$", done.stdout, re.M)
+    print(*printed)
+    if drive == "swerve":
+        numbers = [[float(each) for each in re.findall(r"-?\d+\.\d+", text)]
+                   for text in (printed[0], of_page("text", "odometry"))]
+        assert numbers[0] == pytest.approx(numbers[1], abs=0.002)
 
 
 @needs_robotpy
@@ -371,6 +377,30 @@ def test_a_robot_program_of_its_own_is_driven_through_wpilibs_websocket(
     final = json.loads(output)["final"]
     assert final["x_m"] > 1.0 and final["y_m"] > 1.0
     assert "heard nothing" not in told and json.loads(output)["unusable"] == 0
+
+
+@needs_robotpy
+@pytest.mark.nightly
+@pytest.mark.parametrize("key, device", [
+    ("drive", "PWM[11]"), ("drive_encoder", "Encoder[22]"), ("drive_encoder", "AnalogInput[5]"),
+    ("drive_encoder", "DutyCycleEncoder[20]"), ("drive_encoder", "AnalogEncoder[6]"), ("gyro", "ADXRS450[4]"),
+    ("gyro", "AnalogGyro[1]"), ("gyro", "CANGyro:pigeon"), ("drive", "CANMotor:talon"),
+    ("gyro", "SimDevice:navX/yaw")])
+def test_a_device_that_the_program_lacks_is_refused_by_name(key: str, device: str, tmp_path: Path) -> None:
+    import wpilib
+
+    motors = [wpilib.PWMSparkMax(port) for port in (0, 1)]
+    value = f'"{device}"' if key == "gyro" else f'["{device}", "{device}"]'
+    others = {"drive": "[]", "drive_encoder": "[]"} | {key: value}
+    path = scene_of(tmp_path, TANK, **{"gyro": '"ADXRS450[0]"', **others})
+    path.write_text(re.sub(r'(?m)^gyro = "ADXRS450\[0\]"$', "", path.read_text(encoding="utf-8")), encoding="utf-8")
+
+    class OfTest(Engine):
+        scene = path
+        devices = staticmethod(lambda robot: {} if key == "drive" else {"drive": motors})
+
+    with pytest.raises(BadInput, match=rf"the robot program has no .*{re.escape(device.partition(':')[2] or device)}"):
+        OfTest(None, motors)
 
 
 CPP = """
