@@ -379,6 +379,14 @@ def test_a_robot_program_of_its_own_is_driven_through_wpilibs_websocket(
     assert "heard nothing" not in told and json.loads(output)["unusable"] == 0
 
 
+@pytest.fixture(scope="module")
+def motors() -> list[Any]:
+    """Of one robot program: WPILib gives a port once."""
+    import wpilib
+
+    return [wpilib.PWMSparkMax(port) for port in (0, 1)]
+
+
 @needs_robotpy
 @pytest.mark.nightly
 @pytest.mark.parametrize("key, device", [
@@ -386,10 +394,8 @@ def test_a_robot_program_of_its_own_is_driven_through_wpilibs_websocket(
     ("drive_encoder", "DutyCycleEncoder[20]"), ("drive_encoder", "AnalogEncoder[6]"), ("gyro", "ADXRS450[4]"),
     ("gyro", "AnalogGyro[1]"), ("gyro", "CANGyro:pigeon"), ("drive", "CANMotor:talon"),
     ("gyro", "SimDevice:navX/yaw")])
-def test_a_device_that_the_program_lacks_is_refused_by_name(key: str, device: str, tmp_path: Path) -> None:
-    import wpilib
-
-    motors = [wpilib.PWMSparkMax(port) for port in (0, 1)]
+def test_a_device_that_the_program_lacks_is_refused_by_name(key: str, device: str, motors: list[Any],
+                                                            tmp_path: Path) -> None:
     value = f'"{device}"' if key == "gyro" else f'["{device}", "{device}"]'
     others = {"drive": "[]", "drive_encoder": "[]"} | {key: value}
     path = scene_of(tmp_path, TANK, **{"gyro": '"ADXRS450[0]"', **others})
