@@ -16,6 +16,7 @@ PARTS = {
     "boards": "emulated boards started again and again, idle and with all cores busy",
     "faults": "memory, power and clocks of a node fail in the midst of a session",
     "fuzz": "whatever reads bytes, frames, calls, vehicles and files, under sanitizers",
+    "gazebo": "Gazebo's physics on the same robots: error against step, and time of a step",
     "imports": "robots' files with something broken",
     "long": "long runs beside independent references",
     "misra": "MISRA C:2012 by cppcheck's addon",
