@@ -42,6 +42,7 @@ class Figures:
     heard: int = 0
     unusable: int = 0                # of what was heard: no message of the protocol, or an output that is no number
     sent: int = 0
+    ended_by: str = "user"           # or time, or program
     least_battery_V: float = math.inf  # noqa: N815
     cycle_s: list[float] = field(default_factory=list)
 
@@ -171,6 +172,7 @@ class Bridge:
                       "an output that is no number; they changed nothing")
 
     def _tell_end(self) -> None:
+        self.figures.ended_by = "program"
         self._say(f"the robot program ended the connection after {self.figures.cycles * PERIOD_S:.2f} s; start it, "
                   "then this again")
 
@@ -233,6 +235,8 @@ class Bridge:
             await asyncio.sleep(max(wait, 0.0))
         if listener.done():
             self._tell_end()
+        else:
+            self.figures.ended_by = "time"
 
 
 def message_of(text: str | bytes) -> tuple[str, str, dict[str, Any]] | None:
@@ -298,7 +302,7 @@ def figures_of(bridge: Bridge) -> Mapping[str, Any]:
     motion, figures = bridge.robot.motion(), bridge.figures
     cycles = sorted(figures.cycle_s) or [0.0]
     return {"cycles": figures.cycles, "late_cycles": figures.late_cycles, "heard": figures.heard,
-            "unusable": figures.unusable, "sent": figures.sent,
+            "unusable": figures.unusable, "ended_by": figures.ended_by, "sent": figures.sent,
             "cycle_median_ms": 1e3 * cycles[len(cycles) // 2],
             "least_battery_V": figures.least_battery_V if figures.cycles else None,
             "events": dict(bridge.robot.events),

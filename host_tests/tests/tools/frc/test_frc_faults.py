@@ -78,6 +78,7 @@ def test_the_bridge_of_the_page_drives_a_program_and_writes_its_log(
     output, told = capsys.readouterr()
     rows = np.genfromtxt("run.csv", delimiter=",", names=True)
     assert len(rows) == json.loads(output)["cycles"] == 15
+    assert json.loads(output)["ended_by"] == "time"
     assert json.loads(output)["final"]["x_m"] == pytest.approx(rows["x_m"][-1]) and rows["x_m"][-1] > 0.01
     assert "heard nothing" not in told
     station = next(each["data"] for each in heard if each["type"] == "DriverStation")
@@ -328,6 +329,7 @@ def test_a_program_that_ends_is_told_in_a_line_and_ends_the_run(how: str, tmp_pa
     bridge, said = played(tmp_path, program, math.inf)
     assert len(said) == 1 and re.match(r"the robot program ended the connection after \d\.\d\d s; start it", said[0])
     assert bridge.figures.cycles < 50
+    assert bridge.figures.ended_by == "program"
 
 
 def test_a_program_started_again_finds_a_robot_at_its_start(tmp_path: Path) -> None:

@@ -136,4 +136,4 @@ def play(scene_name: str, json_wanted: bool, given: dict[str, Any]) -> None:
         f"each; {figures['heard']} messages heard, {figures['sent']} sent")
     say(f"at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading {end['heading_rad']:.4f} rad")
     for event, count in figures["events"].items():
-        say(f"{count} times {event}")
+        say(f"{'once' if count == 1 else f'{count} times'} {event}")
