@@ -11,8 +11,10 @@ import shutil
 import subprocess
 import sys
 import time
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -23,8 +25,8 @@ from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.frc import MOTORS, Bridge, Drivetrain, Robot, new_scene
 from laconic.frc.drivetrain import Axis, Battery
-from laconic.frc.engine import Engine
 from laconic.frc.new import box, mass, module_of, motor_of
+from laconic.frc.physics import Engine
 from laconic.scene.base import FrcTable
 
 PAGE = SOURCE_DIR / "docs/frc.md"
@@ -407,6 +409,78 @@ def test_a_device_that_the_program_lacks_is_refused_by_name(key: str, device: st
 
     with pytest.raises(BadInput, match=rf"the robot program has no .*{re.escape(device.partition(':')[2] or device)}"):
         OfTest(None, motors)
+
+
+class State:
+    """What the objects of vendors' simulations have in common here: numbers that are set."""
+
+    motor_voltage = 6.0
+
+    def __init__(self, *names: str):
+        self.set_to: dict[str, float] = {}
+        for name in names:
+            setattr(self, name, partial(self.set_to.__setitem__, name))
+
+
+def of_vendor(*names: str) -> Any:
+    return SimpleNamespace(sim_state=State(*names))
+
+
+class SparkMax:
+    """Stands for REV's."""
+
+    def __init__(self) -> None:
+        self.configAccessor = SimpleNamespace(encoder=SimpleNamespace(getVelocityConversionFactor=lambda: 1.0))
+        self.turns = self.current_A = 0.0
+
+
+class SparkMaxSim:
+    """Stands for REV's: its encoder adds up speed over time."""
+
+    def __init__(self, motor: SparkMax, gearbox: object):
+        self._motor = motor
+
+    def getAppliedOutput(self) -> float:
+        return 0.25
+
+    def iterate(self, rpm: float, bus_V: float, seconds: float) -> None:
+        self._motor.turns += rpm / 60.0 * seconds
+
+    def setMotorCurrent(self, current_A: float) -> None:
+        self._motor.current_A = current_A
+
+
+@needs_robotpy
+@pytest.mark.nightly
+def test_objects_of_vendors_drive_and_read_the_robot_as_the_page_gives_them(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from wpilib.simulation import DriverStationSim
+
+    monkeypatch.setattr(SparkMax, "__module__", "rev")
+    monkeypatch.setitem(sys.modules, "rev", SimpleNamespace(SparkFlex=int, SparkMaxSim=SparkMaxSim))
+    path = scene_of(tmp_path, SWERVE)
+    names: dict[str, Any] = {}
+    text = "import laconic.frc\n" + of_page("python", "robot.pigeon")
+    exec(compile(text, str(path.with_name("physics.py")), "exec"), names)
+    robot = SimpleNamespace(pigeon=of_vendor("set_raw_yaw", "set_angular_velocity_z"), modules=[SimpleNamespace(
+        talon=of_vendor("set_supply_voltage", "set_raw_rotor_position", "set_rotor_velocity"), spark=SparkMax(),
+        cancoder=of_vendor("set_raw_position", "set_velocity")) for _ in range(4)])
+    engine = names["PhysicsEngine"](None, robot)
+    DriverStationSim.setEnabled(True)
+    DriverStationSim.notifyNewData()
+    for _ in range(25):
+        engine.update_sim(0.0, 0.02)
+    motion = engine.drivetrain.motion()
+    assert math.hypot(motion.x_m, motion.y_m) > 0.1 and abs(motion.steering_angle_rad[0]) > 0.1
+    for at, module in enumerate(robot.modules):
+        drive, coder = module.talon.sim_state.set_to, module.cancoder.sim_state.set_to
+        assert drive["set_raw_rotor_position"] == pytest.approx(6.75 * motion.wheel_angle_rad[at] / (2 * math.pi))
+        assert drive["set_supply_voltage"] == pytest.approx(engine.drivetrain.battery_V)
+        assert coder["set_raw_position"] == pytest.approx(motion.steering_angle_rad[at] / (2 * math.pi))
+        assert module.spark.turns == pytest.approx(150 / 7 * motion.steering_angle_rad[at] / (2 * math.pi))
+        assert module.spark.current_A == engine.drivetrain.battery.motor_current_A[4 + at]
+    yaw = robot.pigeon.sim_state.set_to
+    assert yaw["set_raw_yaw"] == pytest.approx(math.degrees(motion.heading_rad))
 
 
 CPP = """

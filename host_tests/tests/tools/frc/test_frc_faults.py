@@ -9,17 +9,19 @@ import re
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import laconic.frc
 from laconic.base.paths import SOURCE_DIR
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.frc import Bridge, Drivetrain, Robot, new_scene
-from laconic.frc.engine import Engine
+from laconic.frc.physics import Engine
 from laconic.frc.websocket import checked
 
 PAGE = SOURCE_DIR / "docs/frc.md"
@@ -217,6 +219,13 @@ def test_a_wrong_function_of_devices_is_refused_by_its_list(given: Any, words: s
 
     with pytest.raises(BadInput, match=words):
         OfTest(None, object())
+
+
+def test_engine_is_the_function_whatever_was_imported_before() -> None:
+    for name in sorted(each.stem for each in Path(laconic.frc.__file__).parent.glob("[a-z]*.py")):
+        import_module(f"laconic.frc.{name}")
+    assert all(callable(getattr(laconic.frc, name)) or isinstance(getattr(laconic.frc, name), dict)
+               for name in laconic.frc.__all__)
 
 
 # ---- the bridge
