@@ -12,12 +12,12 @@ from functools import cache
 
 from laconic.core.given import shown
 from laconic.errors import BadInput, nearest_of
-from laconic.scene.keys import KEYS
+from laconic.scene.keys import KEYS, TABLES
 from laconic.scene.reference import KINDS, path_of, scene_fields
 
 EVERY = 0  # an item `[*]`
 PART = re.compile(r"(\w+)(?:\[(\*|\d{1,9})\])?")
-SEVERAL = ("vehicle.wheel", "vehicle.caster", "vehicle.trailer", "vehicle.body", "vehicle.support", "input")
+SEVERAL = tuple(table.removesuffix("[#]") for table in TABLES if table.endswith("[#]"))
 """Tables of which there are several."""
 
 

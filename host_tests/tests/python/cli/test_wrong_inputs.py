@@ -107,6 +107,8 @@ WRONG = {
     "audit nowhere.csv robotino2": "cannot be read", "audit empty.csv robotino2": "no samples",
     "audit empty.csv": "LOG",
     "audit empty.csv robotino2 --export a.txt": ".yaml", "audit empty.csv robotino2 --map ''": EMPTY,
+    "frc nowhere.toml": "no such scene", "frc s1": "frc.drive",
+    "frc --new swerve --mass x --bumpers 1x1 --track 0.5 -o a.toml": "mass",
     "logs nowhere.csv": "cannot be read", "logs empty.csv": "is empty", "logs folder": "is a folder", "logs": "LOG",
     "logs empty.csv -o a.txt": ".toml", "logs empty.csv --fields /odom": "has no topics",
     "simulate s1 --bag empty.csv/b": "cannot be written", "simulate s1 --bag ''": EMPTY,

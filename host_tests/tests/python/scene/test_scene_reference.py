@@ -42,6 +42,15 @@ gear_ratio = 10.0
 duration_s = 1.0
 step_s = 0.1
 """
+OUTSIDE = """
+[frc]
+drive = ["PWM[0]", "PWM[1]"]
+[ardupilot]
+[[ardupilot.channel]]
+number = 1
+signals = ["voltage_V[1]"]
+full = 12.0
+"""
 VEHICLE = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
 
 
@@ -66,7 +75,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> set[str]:
 
 def test_every_key_that_the_reader_knows_is_in_the_reference_and_no_other(asked: set[str], tmp_path: Path) -> None:
     page = tmp_path / "page.toml"
-    page.write_text(whole_example(), encoding="utf-8")
+    page.write_text(whole_example() + OUTSIDE, encoding="utf-8")
     hinge = tmp_path / "hinge.toml"
     hinge.write_text(MOTOR_OF_A_HINGE, encoding="utf-8")
     for name in (*scene_names(), page, hinge):
