@@ -1,6 +1,6 @@
-/* A robot of an SDF file in Gazebo's physics: gazebo PLUGIN FILE STEP MOTORS JOINT …
+/* A robot of an SDF file in Gazebo's physics: gazebo PLUGIN FILE STEP MOTORS JOINT … DAMPING …
  *
- * The first MOTORS joints have motors, the others are steered. Standard input has one line for each step: the torques
+ * The first MOTORS joints have motors, each with a damping; the others are steered. Standard input has one line for each step: the torques
  * of the motors, then the angles of the steered joints at its end. Prints x, y and heading of the link "base", then the
  * microseconds that a step took. */
 #include <chrono>
@@ -29,7 +29,7 @@ struct Features
                            physics::SetJointVelocityCommandFeature> {};
 
 int main(int count, char **words) {
-    if (count < 6) return std::fputs("gazebo PLUGIN FILE STEP MOTORS JOINT ...\n", stderr), 2;
+    if (count < 6) return std::fputs("gazebo PLUGIN FILE STEP MOTORS JOINT ... DAMPING ...\n", stderr), 2;
     const double step_s = std::atof(words[3]);
     const std::size_t motors = std::strtoul(words[4], nullptr, 10);
     ignition::plugin::Loader loader;
@@ -43,7 +43,10 @@ int main(int count, char **words) {
     auto world = engine->ConstructWorld(*root.WorldByIndex(0));
     auto robot = world->GetModel("robot");
     std::vector<decltype(robot->GetJoint(""))> joints;
-    for (int i = 5; i < count; ++i) joints.push_back(robot->GetJoint(words[i]));
+    const int first_damping = count - static_cast<int>(motors);
+    for (int i = 5; i < first_damping; ++i) joints.push_back(robot->GetJoint(words[i]));
+    std::vector<double> damping;
+    for (int i = first_damping; i < count; ++i) damping.push_back(std::atof(words[i]));
     std::vector<double> values;
     for (double each; std::scanf("%lf", &each) == 1;) values.push_back(each);
     physics::ForwardStep::Input input;
@@ -56,7 +59,7 @@ int main(int count, char **words) {
         const double *given = &values[step * joints.size()];
         for (std::size_t i = 0; i < joints.size(); ++i) {
             if (i < motors)
-                joints[i]->SetForce(0, given[i]);
+                joints[i]->SetForce(0, given[i] - damping[i] * joints[i]->GetVelocity(0));
             else
                 joints[i]->SetVelocityCommand(0, (given[i] - joints[i]->GetPosition(0)) / step_s);
         }
