@@ -20,6 +20,7 @@ PARTS = {
     "imports": "robots' files with something broken",
     "long": "long runs beside independent references",
     "misra": "MISRA C:2012 by cppcheck's addon",
+    "mujoco_trees": "MuJoCo on vehicles with hinges that slip: time of a step, where they end, and why elsewhere",
     "mutate": "small faults in the C sources, which the C tests should notice",
     "population": "made-up vehicles beside their true motion",
     "proof": "Frama-C: no undefined behaviour for any input",
