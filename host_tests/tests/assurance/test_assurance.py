@@ -205,13 +205,13 @@ def test_heading_and_place_do_not_drift_and_a_millionth_too_slow_is_found() -> N
     assert drift.drifted(spin | {"heading_relative": 1e-6}, "double")
 
 
-@pytest.mark.parametrize(("name", "usual_mm"), [("mir_like", 0.5), ("frc_swerve_mk4i", 20.0)])
+@pytest.mark.parametrize(("name", "usual_mm"), [("mir_like", 4.0), ("frc_swerve_mk4i", 50.0)])
 def test_contacts_of_mujoco_that_settle_fast_end_where_this_core_does(name: str, usual_mm: float) -> None:
     pytest.importorskip("mujoco", reason="mujoco is not installed")
     changes = {key: mujoco_trees.CHANGES[key] for key in ("usual", "solref 0.002")}
-    found = mujoco_trees.compared(name, changes, rounds=1, duration_s=3.0)
+    found = mujoco_trees.compared(name, changes, rounds=1)
     assert found["usual"].off_mm > usual_mm
-    assert max(found["solref 0.002"].off_mm, found[mujoco_trees.CORE].off_mm) < 0.2 * usual_mm
+    assert max(found["solref 0.002"].off_mm, found[mujoco_trees.CORE].off_mm) < 0.12 * usual_mm
     assert abs(mujoco_trees.creep_mm(name, None, 1.0)) < 1e-9 < mujoco_trees.creep_mm(name, mujoco_trees.USUAL, 1.0)
 
 
