@@ -303,14 +303,16 @@ class Drivetrain:
         self.table = self.scene.frc or FrcTable()
         check_steering(self.scene)
         self.wheel_count, self.steered_count = self.scene.wheel_count, len(self.scene.hinges)
-        self.battery = Battery(self.table, axes_of(self.scene, self.table))
         self.events: dict[str, int] = {}
-        self._left_over_s = 0.0
         self.restart()
 
     def restart(self) -> None:
-        """Puts the robot back to the scene's start."""
-        self.chassis = chassis_of(self.scene)
+        """Puts the robot back to the scene's start, with a battery at rest."""
+        self._start(self.scene)
+
+    def _start(self, scene: Scene) -> None:
+        self.chassis, self._left_over_s = chassis_of(scene), 0.0
+        self.battery = Battery(self.table, axes_of(scene, self.table))
 
     def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
         """Puts the robot at rest to this pose of its centre."""
@@ -318,7 +320,7 @@ class Drivetrain:
         start = replace(self.scene.initial, x_m=finite_number("x_m", x_m) + centre.real,
                         y_m=finite_number("y_m", y_m) + centre.imag,
                         heading_rad=finite_number("heading_rad", heading_rad))
-        self.chassis = chassis_of(replace(self.scene, initial=start))
+        self._start(replace(self.scene, initial=start))
 
     def run(self, duration_s: float, drive: Sequence[float], steering: Sequence[float] = ()) -> None:
         """Moves on with outputs held; what is left of the duration, less than a step, is added to the next."""
@@ -326,6 +328,8 @@ class Drivetrain:
         outputs = wheels + self._outputs("steering", steering, self.steered_count)
         step_s = self.scene.run.step_s
         left = self._left_over_s + finite_number("duration_s", duration_s)
+        if duration_s < 0.0:
+            raise BadInput(f"duration_s: {duration_s:g} s is not usable; give 0 or more")
         steps = int(left / step_s + 1e-6)
         self._left_over_s = left - steps * step_s
         for _ in range(steps):

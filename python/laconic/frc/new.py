@@ -6,6 +6,7 @@ load, at 12 V. What nobody measured is an assumption: the scene and `New.assumed
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -20,6 +21,8 @@ WHEEL_KG = 0.4                   # of one wheel, as an even disc
 ROTOR_KGM2 = 4e-5                # of one motor
 COM_Z_M = 0.2
 FRICTION = 1.1                   # tread on carpet
+MOST_KG, MOST_M = 100.0, 3.0     # the rules allow about 72 kg with bumpers and battery, and less than 2 m
+MOST_RADIUS_M = 0.3
 
 
 @dataclass(frozen=True)
@@ -194,6 +197,7 @@ def new_scene(robot: Robot) -> New:
 def _checked(robot: Robot) -> Robot:
     if robot.kind not in KINDS:
         raise BadInput(f"kind: {robot.kind} is not a drive; give one of {', '.join(KINDS)}")
+    _check_units(robot)
     longest, widest = robot.bumpers_m
     for option, value, most in (("track", robot.track_m, widest), ("wheelbase", robot.wheelbase_m, longest)):
         if value is not None and value >= most:
@@ -220,9 +224,28 @@ def _checked(robot: Robot) -> Robot:
     if robot.wheels > 2 and robot.friction is None:
         raise BadInput(f"wheels: {robot.wheels} wheels of a differential drive slip sideways when it turns; give the "
                        "friction of the ground, such as 1.1")
+    if robot.name is not None and not robot.name.isprintable():
+        raise BadInput("name: holds a character that cannot be printed; give plain text")
     if robot.motors < 1:
         raise BadInput(f"motors: {robot.motors} is not a number of motors; give 1 or more")
     return robot
+
+
+def _check_units(robot: Robot) -> None:
+    """BadInput for a number above 0 that fits no robot, but does in inches or pounds."""
+    for option, value, most, unit, example in (
+            ("mass", robot.mass_kg, MOST_KG, "kg", "115lb"),
+            ("bumpers", max(robot.bumpers_m), MOST_M, "m", "33inx32in"),
+            ("track", robot.track_m, MOST_M, "m", "20.5in"),
+            ("wheelbase", robot.wheelbase_m, MOST_M, "m", "20.5in"),
+            ("wheel radius", robot.wheel_radius_m, MOST_RADIUS_M, "m", "2in")):
+        if value is not None and not 0.0 < value <= most:
+            raise BadInput(f"{option}: {value:g} {unit} is not of an FRC robot, which has at most {most:g} {unit}; "
+                           f"give another unit, such as {example}, or correct the number")
+    for option, value in (("gearing", robot.gearing), ("steering gearing", robot.steering_gearing),
+                          ("friction", robot.friction), ("current limit", robot.current_limit_A)):
+        if value is not None and not 0.0 < value < math.inf:
+            raise BadInput(f"{option}: {value:g} is not usable; give a number above 0")
 
 
 def entry(key: str, value: object, note: str = "") -> str:
@@ -234,7 +257,7 @@ def entry(key: str, value: object, note: str = "") -> str:
 def _head(robot: Robot, title: str) -> list[str]:
     longest, widest = robot.bumpers_m
     return [f"# {title}", f"# {robot.mass_kg:.4g} kg, bumpers {longest:.4g} m × {widest:.4g} m. Made by laconic frc "
-            "--new; change what you know better.", f'name = "{robot.name or title}"', ""]
+            "--new; change what you know better.", f"name = {json.dumps(robot.name or title, ensure_ascii=False)}", ""]
 
 
 def _yaw_inertia(robot: Robot, assumed: list[str]) -> float:

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+from urllib.parse import urlsplit
 
 from laconic.errors import BadInput, words_of
 from laconic.frc.drivetrain import Drivetrain, Motion
@@ -27,6 +28,7 @@ NEVER_S = 1e30            # between two counts of an encoder that stands
 FULL_SCALE_V = 5.0
 SPELLED = ("SimDevice", "CANMotor", "CANEncoder", "CANDutyCycle", "CANGyro", "DutyCycle", "Gyro")
 CONNECT_S = 0.25          # between two tries to connect
+CLOSE_S = 1.0             # for a program that no longer listens
 Message = tuple[str, str, dict[str, Any]]  # type, device, data
 Place = tuple[str, str, str]               # type, device, name of a value without its direction
 
@@ -38,7 +40,9 @@ class Figures:
     cycles: int = 0
     late_cycles: int = 0             # a period or more behind
     heard: int = 0
+    unusable: int = 0                # of what was heard: no message of the protocol, or an output that is no number
     sent: int = 0
+    ended_by: str = "user"           # or time, or program
     least_battery_V: float = math.inf  # noqa: N815
     cycle_s: list[float] = field(default_factory=list)
 
@@ -72,29 +76,32 @@ class Bridge:
     # ---- what the program sends
 
     def hear(self, text: str | bytes) -> None:
-        """Takes a message; what is not of the protocol is ignored, as it demands."""
-        try:
-            message = json.loads(text)
-        except ValueError:
-            return
-        if not isinstance(message, dict):
-            return
-        kind, device, data = (message.get(key) for key in ("type", "device", "data"))
-        if not (isinstance(kind, str) and isinstance(device, str) and isinstance(data, dict)):
-            return
+        """Takes a message; what is not of the protocol changes nothing, as it demands, and is counted."""
         self.figures.heard += 1
+        message = message_of(text)
+        if message is None:
+            self.figures.unusable += 1
+            return
+        kind, device, data = message
         for key, value in data.items():
             name = key.lstrip("<>")
             if kind in SPELLED:
                 self._keys[kind, device, name.lower()] = key
-            if (kind, device, name) in self._outputs and isinstance(value, int | float) and math.isfinite(value):
-                self._outputs[kind, device, name] = float(value)
+            if (kind, device, name) in self._outputs:
+                self._take((kind, device, name), value)
         if data.get("<init", kind in SPELLED):
             self._seen.add((kind, device))
-        if kind == "Encoder" and isinstance(channel := data.get("<channel_a"), int):
-            self._encoders[channel] = device
+        if kind == "Encoder" and (channel := number_of(data.get("<channel_a"))) is not None:
+            self._encoders[int(channel)] = device
         if kind == "DriverStation" and isinstance(on := data.get(">enabled"), bool):
             self._is_on = on
+
+    def _take(self, place: Place, value: object) -> None:
+        """An output; one that is no number leaves what was there."""
+        if (number := number_of(value)) is None:
+            self.figures.unusable += 1
+        else:
+            self._outputs[place] = number
 
     def _of(self, devices: tuple[Device, ...]) -> list[float]:
         return [device.sign * self._outputs[place_of(device)] if self._is_on else 0.0 for device in devices]
@@ -153,14 +160,34 @@ class Bridge:
         try:
             await self._play(socket, listener, duration_s)
         except ConnectionClosed:
-            self._say("the robot program closed the connection")
+            self._tell_end()
         finally:
             listener.cancel()
+            await asyncio.gather(listener, return_exceptions=True)
             await socket.close()
-        missing = [device.text.lstrip("-") for device in (*self.robot.table.drive, *self.robot.table.steering)
-                   if place_of(device)[:2] not in self._seen]
-        if missing:
-            self._say(f"heard nothing of {', '.join(dict.fromkeys(missing))}; compare [frc] with the program's ports")
+        if missing := self._missing():
+            self._say(f"heard nothing of {', '.join(missing)}; compare [frc] with the program's ports")
+        if self.figures.unusable:
+            self._say(f"{self.figures.unusable} of {self.figures.heard} messages were not of WPILib's protocol, or had "
+                      "an output that is no number; they changed nothing")
+
+    def _tell_end(self) -> None:
+        self.figures.ended_by = "program"
+        self._say(f"the robot program ended the connection after {self.figures.cycles * PERIOD_S:.2f} s; start it, "
+                  "then this again")
+
+    def _missing(self) -> list[str]:
+        """Devices of [frc] that the program did not speak of."""
+        table = self.robot.table
+        found = [device.text.lstrip("-") for device in (
+            *table.drive, *table.steering, *table.drive_encoder, *table.steering_encoder,
+            *((table.gyro,) if table.gyro else ())) if not self._is_heard(device)]
+        return list(dict.fromkeys(found))
+
+    def _is_heard(self, device: Device) -> bool:
+        if device.kind == "Encoder":
+            return int(device.name) in self._encoders
+        return place_in_messages(device) in self._seen
 
     async def _connect(self, connect_s: float) -> Any:
         from websockets.asyncio.client import connect
@@ -169,8 +196,8 @@ class Bridge:
         ends, reason = time.monotonic() + connect_s, "it does not answer"
         while True:
             try:
-                return await connect(self.url, open_timeout=max(connect_s, 1.0))
-            except InvalidURI:
+                return await connect(self.url, open_timeout=max(connect_s, 1.0), close_timeout=CLOSE_S, proxy=None)
+            except (InvalidURI, ValueError):  # ValueError: a host that no name can be
                 raise BadInput(f"--url {self.url}: is not the address of a WebSocket; give one such as {URL}") from None
             except InvalidHandshake:
                 raise BadInput(f"--url {self.url}: what answers there refused the connection; WPILib's server has the "
@@ -207,7 +234,44 @@ class Bridge:
                 due = time.monotonic()
             await asyncio.sleep(max(wait, 0.0))
         if listener.done():
-            self._say("the robot program closed the connection")
+            self._tell_end()
+        else:
+            self.figures.ended_by = "time"
+
+
+def message_of(text: str | bytes) -> tuple[str, str, dict[str, Any]] | None:
+    """Type, device and data of a message; None for what is none."""
+    try:
+        message = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(message, dict):
+        return None
+    kind, device, data = message.get("type"), message.get("device"), message.get("data")
+    if isinstance(kind, str) and isinstance(device, str) and isinstance(data, dict):
+        return kind, device, data
+    return None
+
+
+def number_of(value: object) -> float | None:
+    """A finite number; None for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def place_in_messages(device: Device) -> tuple[str, str]:
+    """Type and device of messages about it."""
+    if device.kind in ("ADXRS450", "AnalogGyro"):
+        return "Gyro", f"{device.kind}[{device.name}]"
+    return {"AnalogInput": ("AI", device.name),
+            "DutyCycleEncoder": ("DutyCycle", f"DutyCycleEncoder[{device.name}]"),
+            "AnalogEncoder": ("SimDevice", f"AnalogEncoder[{device.name}]")}.get(
+                device.kind, (device.kind, device.name))
 
 
 def gyro_values(device: Device, motion: Motion) -> tuple[str, str, dict[str, float]]:
@@ -223,7 +287,12 @@ def gyro_values(device: Device, motion: Motion) -> tuple[str, str, dict[str, flo
 
 def checked(url: str) -> str:
     """The address, or BadInput for one that is not of a WebSocket."""
-    if not url.startswith(("ws://", "wss://")):
+    try:
+        parts = urlsplit(url)
+        is_address = parts.scheme in ("ws", "wss") and bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        is_address = False
+    if not is_address:
         raise BadInput(f"--url {url}: is not the address of a WebSocket; give one such as {URL}")
     return url
 
@@ -232,7 +301,8 @@ def figures_of(bridge: Bridge) -> Mapping[str, Any]:
     """The run in numbers."""
     motion, figures = bridge.robot.motion(), bridge.figures
     cycles = sorted(figures.cycle_s) or [0.0]
-    return {"cycles": figures.cycles, "late_cycles": figures.late_cycles, "heard": figures.heard, "sent": figures.sent,
+    return {"cycles": figures.cycles, "late_cycles": figures.late_cycles, "heard": figures.heard,
+            "unusable": figures.unusable, "ended_by": figures.ended_by, "sent": figures.sent,
             "cycle_median_ms": 1e3 * cycles[len(cycles) // 2],
             "least_battery_V": figures.least_battery_V if figures.cycles else None,
             "events": dict(bridge.robot.events),

@@ -124,6 +124,9 @@ class Device:
     sign: float    # -1: it turns the other way
 
 
+MOST_COUNTS = 1e6  # in a turn; WPILib counts in 32 bits
+
+
 @dataclass(frozen=True)
 class FrcTable:
     """The values of `[frc]`; without devices a list is empty."""
@@ -149,6 +152,10 @@ def read_frc(table: Table, vehicle: Mapping[str, Any]) -> FrcTable:
     numbers = {name: read_number(table, name) for name in (
         "battery_V", "battery_resistance_ohm", "current_limit_A", "steering_current_limit_A", "drive_counts",
         "steering_counts")}
+    for name, most, unit in (("battery_V", 1e3, "V"), ("battery_resistance_ohm", 1e3, "ohm"),
+                             ("drive_counts", MOST_COUNTS, "counts"), ("steering_counts", MOST_COUNTS, "counts")):
+        if numbers[name] > most:
+            table.fail(name, f"is {numbers[name]:g}; give at most {most:g} {unit}")
     found = FrcTable(
         **numbers, drive=_devices(table, "drive", OUTPUTS, wheels, "wheels"),
         drive_encoder=_devices(table, "drive_encoder", COUNTERS, wheels, "wheels"),

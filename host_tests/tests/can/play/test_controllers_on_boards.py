@@ -3,6 +3,7 @@ core's, and faults by order that they notice."""
 
 from __future__ import annotations
 
+import re
 import threading
 from types import SimpleNamespace
 from typing import Any
@@ -30,7 +31,8 @@ def test_controllers_drive_a_process_and_its_wheels_move_as_the_core_with_its_to
     if protocol == "odrive":
         pytest.importorskip("odrive_can", reason="odrive-can needs Python 3.11")
     verdict = run(protocol, "process", 200, STEP_S)
-    assert verdict.startswith("passed: 2"), verdict
+    passed = re.match(r"passed: (\d+) cycles", verdict)  # a busy machine takes more to see all steps
+    assert passed and int(passed[1]) >= 200, verdict
 
 
 class Told:

@@ -11,8 +11,10 @@ import shutil
 import subprocess
 import sys
 import time
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,7 @@ from laconic.errors import BadInput
 from laconic.frc import MOTORS, Bridge, Drivetrain, Robot, new_scene
 from laconic.frc.drivetrain import Axis, Battery
 from laconic.frc.new import box, mass, module_of, motor_of
+from laconic.frc.physics import Engine
 from laconic.scene.base import FrcTable
 
 PAGE = SOURCE_DIR / "docs/frc.md"
@@ -229,7 +232,9 @@ def test_the_bridge_is_the_hardware_of_a_robot_program(tmp_path: Path) -> None:
     assert encoders["5"][">count"] > 0
     assert [each["data"].keys() for each in heard if each["type"] == "Gyro"][-1] >= {"<>angle_x"}
     assert [each["data"][">vin_voltage"] for each in heard if each["type"] == "RoboRIO"][-1] < 12.0
-    assert said == ["the robot program closed the connection"]
+    assert re.fullmatch(r"the robot program ended the connection after 0\.\d\d s; start it, then this again", said[0])
+    assert said[1:] == ["4 of 10 messages were not of WPILib's protocol, or had an output that is no number; they "
+                        "changed nothing"]
 
 
 def test_a_program_that_does_not_answer_is_one_line(tmp_path: Path) -> None:
@@ -296,9 +301,14 @@ def test_autonomous(control, robot):
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests/robot_test.py").write_text(test, encoding="utf-8")
     done = robotpy(tmp_path, "test", "--", "-s")
-    assert done.returncode == 0, done.stdout[-3000:]
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert "1 passed" in done.stdout
-    print(*re.findall(r"^x .*$", done.stdout, re.M))
+    printed = re.findall(r"^x .*$", done.stdout, re.M)
+    print(*printed)
+    if drive == "swerve":
+        numbers = [[float(each) for each in re.findall(r"-?\d+\.\d+", text)]
+                   for text in (printed[0], of_page("text", "odometry"))]
+        assert numbers[0] == pytest.approx(numbers[1], abs=0.002)
 
 
 @needs_robotpy
@@ -362,11 +372,115 @@ def test_a_robot_program_of_its_own_is_driven_through_wpilibs_websocket(
     try:
         capsys.readouterr()
         assert run(["frc", str(tmp_path / "robot.toml"), "--enable", "auto", "--duration", "4", "--json"]) == 0
-        final = json.loads(capsys.readouterr().out)["final"]
+        output, told = capsys.readouterr()
     finally:
         program.terminate()
         program.wait(20)
+    final = json.loads(output)["final"]
     assert final["x_m"] > 1.0 and final["y_m"] > 1.0
+    assert "heard nothing" not in told and json.loads(output)["unusable"] == 0
+
+
+@pytest.fixture(scope="module")
+def motors() -> list[Any]:
+    """Of one robot program: WPILib gives a port once."""
+    import wpilib
+
+    return [wpilib.PWMSparkMax(port) for port in (0, 1)]
+
+
+@needs_robotpy
+@pytest.mark.nightly
+@pytest.mark.parametrize("key, device", [
+    ("drive", "PWM[11]"), ("drive_encoder", "Encoder[22]"), ("drive_encoder", "AnalogInput[5]"),
+    ("drive_encoder", "DutyCycleEncoder[20]"), ("drive_encoder", "AnalogEncoder[6]"), ("gyro", "ADXRS450[4]"),
+    ("gyro", "AnalogGyro[1]"), ("gyro", "CANGyro:pigeon"), ("drive", "CANMotor:talon"),
+    ("gyro", "SimDevice:navX/yaw")])
+def test_a_device_that_the_program_lacks_is_refused_by_name(key: str, device: str, motors: list[Any],
+                                                            tmp_path: Path) -> None:
+    value = f'"{device}"' if key == "gyro" else f'["{device}", "{device}"]'
+    others = {"drive": "[]", "drive_encoder": "[]"} | {key: value}
+    path = scene_of(tmp_path, TANK, **{"gyro": '"ADXRS450[0]"', **others})
+    path.write_text(re.sub(r'(?m)^gyro = "ADXRS450\[0\]"$', "", path.read_text(encoding="utf-8")), encoding="utf-8")
+
+    class OfTest(Engine):
+        scene = path
+        devices = staticmethod(lambda robot: {} if key == "drive" else {"drive": motors})
+
+    with pytest.raises(BadInput, match=rf"the robot program has no .*{re.escape(device.partition(':')[2] or device)}"):
+        OfTest(None, motors)
+
+
+class State:
+    """What the objects of vendors' simulations have in common here: numbers that are set."""
+
+    motor_voltage = 6.0
+
+    def __init__(self, *names: str):
+        self.set_to: dict[str, float] = {}
+        for name in names:
+            setattr(self, name, partial(self.set_to.__setitem__, name))
+
+
+def of_vendor(*names: str) -> Any:
+    return SimpleNamespace(sim_state=State(*names))
+
+
+class SparkMax:
+    """Stands for REV's."""
+
+    def __init__(self) -> None:
+        self.configAccessor = SimpleNamespace(encoder=SimpleNamespace(getVelocityConversionFactor=lambda: 1.0))
+        self.turns = self.current_A = 0.0
+
+
+class SparkMaxSim:
+    """Stands for REV's: its encoder adds up speed over time."""
+
+    def __init__(self, motor: SparkMax, gearbox: object):
+        self._motor = motor
+
+    def getAppliedOutput(self) -> float:
+        return 0.25
+
+    def iterate(self, rpm: float, bus_V: float, seconds: float) -> None:
+        self._motor.turns += rpm / 60.0 * seconds
+
+    def setMotorCurrent(self, current_A: float) -> None:
+        self._motor.current_A = current_A
+
+
+@needs_robotpy
+@pytest.mark.nightly
+def test_objects_of_vendors_drive_and_read_the_robot_as_the_page_gives_them(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from wpilib.simulation import DriverStationSim
+
+    monkeypatch.setattr(SparkMax, "__module__", "rev")
+    monkeypatch.setitem(sys.modules, "rev", SimpleNamespace(SparkFlex=int, SparkMaxSim=SparkMaxSim))
+    path = scene_of(tmp_path, SWERVE)
+    names: dict[str, Any] = {}
+    text = "import laconic.frc\n" + of_page("python", "robot.pigeon")
+    exec(compile(text, str(path.with_name("physics.py")), "exec"), names)
+    robot = SimpleNamespace(pigeon=of_vendor("set_raw_yaw", "set_angular_velocity_z"), modules=[SimpleNamespace(
+        talon=of_vendor("set_supply_voltage", "set_raw_rotor_position", "set_rotor_velocity"), spark=SparkMax(),
+        cancoder=of_vendor("set_raw_position", "set_velocity")) for _ in range(4)])
+    engine = names["PhysicsEngine"](None, robot)
+    DriverStationSim.setEnabled(True)
+    DriverStationSim.notifyNewData()
+    for _ in range(25):
+        engine.update_sim(0.0, 0.02)
+    motion = engine.drivetrain.motion()
+    assert math.hypot(motion.x_m, motion.y_m) > 0.1 and abs(motion.steering_angle_rad[0]) > 0.1
+    for at, module in enumerate(robot.modules):
+        drive, coder = module.talon.sim_state.set_to, module.cancoder.sim_state.set_to
+        assert drive["set_raw_rotor_position"] == pytest.approx(6.75 * motion.wheel_angle_rad[at] / (2 * math.pi))
+        assert drive["set_supply_voltage"] == pytest.approx(engine.drivetrain.battery_V)
+        assert coder["set_raw_position"] == pytest.approx(motion.steering_angle_rad[at] / (2 * math.pi))
+        assert module.spark.turns == pytest.approx(150 / 7 * motion.steering_angle_rad[at] / (2 * math.pi))
+        assert module.spark.current_A == engine.drivetrain.battery.motor_current_A[4 + at]
+    yaw = robot.pigeon.sim_state.set_to
+    assert yaw["set_raw_yaw"] == pytest.approx(math.degrees(motion.heading_rad))
 
 
 CPP = """

@@ -64,7 +64,8 @@ def command(scene_name: str | None, kind: str | None, out: Path | None, json_wan
     if kind is not None:
         goes_with("--new", "--json", *OF_NEW)
         if scene_name is not None:
-            raise BadInput(f"{scene_name}: has no meaning beside --new; give the new scene as -o {scene_name}")
+            raise BadInput(f"{scene_name}: has no meaning beside --new; give the new scene as -o robot.toml, and a "
+                           "unit without a space, as 115lb")
         make(kind, out, json_wanted, given)
         return
     if scene_name is None:
@@ -80,9 +81,6 @@ def make(kind: str, out: Path | None, json_wanted: bool, given: dict[str, Any]) 
             raise BadInput(f"--{option}: is missing; give it as {example}")
     if out is None:
         raise BadInput("--out: is missing; give the name of the new scene, such as -o robot.toml")
-    for option in ("gearing", "steering_gearing", "friction", "current_limit"):
-        if given[option] is not None and not 0.0 < given[option] < float("inf"):
-            raise BadInput(f"--{option.replace('_', '-')} {given[option]:g}: is not usable; give a number above 0")
 
     def optional(name: str) -> float | None:
         return None if given[name] is None else length(f"--{name.replace('_', '-')}", given[name])
@@ -138,4 +136,4 @@ def play(scene_name: str, json_wanted: bool, given: dict[str, Any]) -> None:
         f"each; {figures['heard']} messages heard, {figures['sent']} sent")
     say(f"at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading {end['heading_rad']:.4f} rad")
     for event, count in figures["events"].items():
-        say(f"{count} times {event}")
+        say(f"{'once' if count == 1 else f'{count} times'} {event}")

@@ -106,8 +106,8 @@ class Counter(Resettable):
 class Absolute:
     """An encoder that shows the share of a turn."""
 
-    def __init__(self, write: Callable[[float], None], scale: float, sign: float):
-        self._write, self._scale, self._sign = write, scale, sign
+    def __init__(self, write: Callable[[float], None], scale: float, sign: float, is_there: bool = True):
+        self._write, self._scale, self._sign, self.is_there = write, scale, sign, is_there
 
     def show(self, reading: Reading) -> None:
         """As Port.show."""
@@ -284,7 +284,8 @@ def _named(part: str, device: Device, counts: float) -> Any:
     elif device.kind == "Encoder":
         made = Counter(_encoder(sim, number, device), counts, device.sign)
     elif device.kind == "AnalogInput":
-        made = Absolute(sim.AnalogInputSim(number).setVoltage, FULL_SCALE_V, device.sign)
+        analog = sim.AnalogInputSim(number)
+        made = Absolute(analog.setVoltage, FULL_SCALE_V, device.sign, analog.getInitialized())
     elif device.kind in ("DutyCycleEncoder", "AnalogEncoder"):
         name = f"{device.kind}[{device.name}]"
         made = Absolute(Values({"DutyCycleEncoder": f"DutyCycle:{name}"}.get(device.kind, name)).value("Position").set,
@@ -292,6 +293,7 @@ def _named(part: str, device: Device, counts: float) -> Any:
     elif device.kind == "AnalogGyro":
         gyro = sim.AnalogGyroSim(number)
         made = Gyro(gyro.getAngle, gyro.setAngle, gyro.setRate, -device.sign)
+        made.is_there = gyro.getInitialized()
     elif part == "gyro":
         made = _gyro(device)
     else:
@@ -367,10 +369,13 @@ class Engine:
         table = self.drivetrain.table
         parts: dict[str, Any] = {part: getattr(table, part) for part in PARTS}
         given = type(self).devices
-        own = dict(given(robot)) if given else {}
+        own = given(robot) if given else {}
+        if not isinstance(own, Mapping):
+            raise BadInput(f"frc: the function of devices gave {shown(own)}; let it return a dict of lists by "
+                           f"{', '.join(PARTS)}")
         if unknown := [each for each in own if each not in PARTS]:
             raise BadInput(f"frc.{unknown[0]}: there is no such list of devices; {nearest_of(str(unknown[0]), PARTS)}")
-        return parts | own
+        return parts | dict(own)
 
     def _check_count(self, part: str, many: Sequence[Any]) -> None:
         wanted = {"drive": self.drivetrain.wheel_count, "steering": self.drivetrain.steered_count}.get(
