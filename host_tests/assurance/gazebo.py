@@ -38,7 +38,7 @@ STEPS_S = (0.002, 0.001, 0.0005, 0.00025)
 OURS_S, REFERENCE_S, THIRD_S = (0.005, 0.001), 1e-4, 2.5e-4
 GRAVITY = 9.81
 LIGHTEST_SHARE = 0.05  # of its body is a wheel at most, whose mass no scene gives
-SLIPS, OWN_LOADS = "mecanum that slips", "the same, against DART's limits of friction"
+SLIPS, OWN_LOADS = "mecanum that slips", "the same, by DART's limits"
 SCENES = {"differential": "turtlebot3_burger", "mecanum": "kuka_youbot", "four casters": "mir_like",
           "Ackermann": "f1tenth"}
 SLIPPING = """
@@ -382,15 +382,18 @@ def picture(rows: Sequence[Row], file: Path) -> None:
     from matplotlib import pyplot
 
     mpl.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "gazebo"})
-    figure, axes = pyplot.subplots(figsize=(7, 4))
+    figure, axes = pyplot.subplots(figsize=(8, 4))
     for at, name in enumerate(dict.fromkeys(row.robot for row in rows)):
         for which, mark in (("Gazebo", "o-"), ("laconic", "s--")):
             points = [(1e3 * row.step_s, max(row.error_mm, 1e-9)) for row in rows
                       if (row.robot, row.program) == (name, which) and not math.isnan(row.error_mm)]
             if points:
                 axes.loglog(*zip(*points, strict=True), mark, color=f"C{at}", label=f"{which}: {name}")
+    steps_ms = sorted({1e3 * row.step_s for row in rows})
+    axes.set_xticks(steps_ms, [f"{each:g}" for each in steps_ms])
+    axes.set_xticks([], minor=True)
     axes.set_xlabel("step in ms")
-    axes.set_ylabel("error of the place at the end in mm")
+    axes.set_ylabel("error of the place at the end in mm\n(less than 1e-9 is drawn there)")
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.tight_layout()
     figure.savefig(file, metadata={"Date": None})

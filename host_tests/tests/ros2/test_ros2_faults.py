@@ -24,7 +24,7 @@ from cyclonedds.topic import Topic
 import laconic
 from laconic.errors import BadInput
 from laconic.ros2 import wire
-from laconic.ros2.lines import LibraryLines, library_lines
+from laconic.ros2.lines import LibraryLines, kind_of, library_lines
 from laconic.ros2.maps import Map
 from laconic.ros2.messages import message_class, new, plain_class, type_hash
 from laconic.ros2.names import LATCHED, USUAL, polled
@@ -42,6 +42,12 @@ def yaw_of(rotation: Any) -> float:
 
 
 # ---- faults: one line each, and the robot stops
+
+def test_broken_packets_are_one_kind_of_line_whatever_their_bytes() -> None:
+    kinds = {kind_of(f"malformed packet received from vendor 1.16 length {n} state parse:{what} <52545053 0{n}> 0x{n}")
+             for n, what in ((140, "HEARTBEAT"), (108, "shortmsg"))}
+    assert len(kinds) == 1 and kind_of("writer 1:2 blocked for too long") not in kinds
+
 
 def test_silence_stops_the_robot() -> None:
     with rig_of() as rig:

@@ -405,6 +405,12 @@ def test_a_speed_that_cannot_be_reached_is_told_once_and_the_reached_one_at_the_
     assert " times as fast as the clock, " in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("scene", "moves"), [("paper_caster", True), ("turtlebot3_burger", False)])
+def test_a_scene_that_starts_in_motion_says_so(scene: str, moves: bool, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", scene, *LOCAL, "--duration", "0.04"]) == 0
+    assert ("the robot moves without a command" in capsys.readouterr().out) == moves
+
+
 def test_a_car_says_what_drives_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["ros2", "f1tenth", *LOCAL, "--duration", "0.1"]) == 0
     assert "hears Twist or TwistStamped on /cmd_vel and AckermannDriveStamped on ackermann_cmd and drive" in \

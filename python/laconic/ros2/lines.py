@@ -17,7 +17,8 @@ from pathlib import Path
 HEAD = re.compile(r"^[\d.]+ \[\S*\]\s+\S+?: |^\d{4}-\d\d-\d\dT\S+\s+")  # time, domain and thread; or time
 OF_ONE = re.compile(r"\b[0-9a-f]+(:[0-9a-f]+)+\b|#?\b\d+\b")             # GUIDs and numbers, which differ line by line
 UNREADABLE = re.compile(r"deserialization r[tq](\S+?)/(\w+(?:::\w+)+) failed")
-LONGEST = 300  # letters of a line that are shown
+LONGEST = 160  # letters of a line that are shown
+OF_KIND = 5    # words that say what happened; then come bytes and states of one message
 MOST_BYTES = 2**20  # that are read at once
 
 
@@ -39,8 +40,8 @@ class LibraryLines:
 
 
 def kind_of(line: str) -> str:
-    """The same for lines that differ by numbers and addresses alone."""
-    return OF_ONE.sub("…", line)
+    """The same for lines that differ by numbers, addresses and what follows the first words."""
+    return " ".join(OF_ONE.sub("…", line).split()[:OF_KIND])
 
 
 def unreadable_of(line: str) -> tuple[str, str] | None:

@@ -238,7 +238,7 @@ class RobotNode:
                        "robot on the ground leaves out")
         self._heard(message, "cmd_vel", now_s)
         for remark in self.base.command(self.robot, *wanted):
-            self._tell(now_s, f"limited: {remark.partition(' ')[0]}", f"cmd_vel: {remark}")
+            self._tell(now_s, f"limited: {remark.partition(' of')[0]}", f"cmd_vel: {remark}")
 
     def _obey_drive(self, message: Any, topic: str, now_s: float) -> None:
         drive = message.drive

@@ -146,6 +146,11 @@ class Session:
                          "[base] joint_names")
         return node
 
+    def moves_at_start(self) -> bool:
+        """Whether the scene's start is a motion, which the base ends by no command of its own."""
+        start = self.base.scene.initial
+        return any((*start.velocity_body_m_per_s, start.yaw_rate_rad_per_s, *(start.nu_rad_per_s or ())))
+
     # ---- one cycle
 
     def cycle(self) -> None:

@@ -134,13 +134,16 @@ def introduction(session: Session) -> str:
     options, robots = session.options, session.robots
     topic = robots[0].command_topic.removeprefix("rt")
     kind = {None: "Twist or TwistStamped", True: "TwistStamped", False: "Twist"}[options.is_stamped]
-    drives = " and AckermannDriveStamped on ackermann_cmd and drive" if session.base.is_car else ""
+    drives = " and AckermannDriveStamped on ackermann_cmd and drive of that namespace" if session.base.is_car else ""
     more = f" (and those of {len(robots) - 1} more)" if robots[1:] else ""
     stamps = f"simulated time at {options.speed:g} times" if options.is_sim_time else "the system's time"
     torques = "" if session.base.loop.signal == "voltage_V" else "; has no motors, so torques drive its wheels"
+    moves = "\nthe scene starts in motion, which [initial] gives: the robot moves without a command" \
+        if session.moves_at_start() else ""
     return (f"{session.scene.name}: {robots[0].node.full_name} in domain {options.domain}, {options.rate_Hz:g} Hz, "
             f"{stamps}; hears {kind} on {topic}{drives}{more}{torques}\n"
-            f"drive it: ros2 topic pub -r 10 {topic} geometry_msgs/msg/{kind.partition(' ')[0]} ... ; stop with Ctrl-C")
+            f"drive it: ros2 topic pub -r 10 {topic} geometry_msgs/msg/{kind.partition(' ')[0]} ... ; stop with Ctrl-C"
+            f"{moves}")
 
 
 def summary(figures: dict[str, Any]) -> str:
