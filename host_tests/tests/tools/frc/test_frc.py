@@ -300,8 +300,8 @@ def test_autonomous(control, robot):
     with control.run_robot():
         control.step_timing(seconds=0.1, autonomous=True, enabled=False)
         control.step_timing(seconds=0.6, autonomous=True, enabled=True)
-        ahead = robot.physics.drivetrain.motion()
-        assert ahead.x_m > 0.3 and abs(ahead.y_m) < 1e-6 and robot.encoders[0].get() > 500
+        ahead = robot.physics.drivetrain.motion()  # PWM pulses are whole, so that the sides differ a little
+        assert ahead.x_m > 0.3 and abs(ahead.y_m) < 0.01 and robot.encoders[0].get() > 500
         control.step_timing(seconds=2.0, autonomous=True, enabled=True)
         assert robot.physics.drivetrain.motion().heading_rad > 0.5
         assert robot.gyro.getAngle() < -30
