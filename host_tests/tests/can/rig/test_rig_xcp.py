@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import struct
-import subprocess
 import sys
 import threading
 import time
@@ -378,17 +377,11 @@ def program_of_page(start: str) -> str:
     return start + page.partition(f"```python\n{start}")[2].partition("```")[0]
 
 
-@contextmanager
-def rig_of_page(port: int) -> Iterator[None]:
-    """The command of the page that drives the node."""
+def test_the_rig_of_docs_rig_ports_md_drives_a_shared_node() -> None:
     page = (SOURCE_DIR / "docs/rig-ports.md").read_text(encoding="utf-8")
-    words = re.findall(r"^laconic (rig s1 .*:4000 --free-run .*)$", page, re.M)[0].replace(":4000", f":{port}").split()
-    with subprocess.Popen([sys.executable, "-c", "import sys; from laconic.cli.main import run; sys.exit(run(sys.argv"
-                           "[1:]))", *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as rig:
-        try:
-            yield
-        finally:
-            rig.terminate()
+    command = re.findall(r"^laconic (rig s1 .*:4000 --free-run --steps) 60000$", page, re.M)[0]
+    with node_process("double", ID_BASE, "--shared") as port:
+        assert run([*command.replace(":4000", f":{port}").split(), "300"]) == 0
 
 
 @pytest.mark.parametrize(("start", "needs", "sample"), [
@@ -397,15 +390,14 @@ def rig_of_page(port: int) -> Iterator[None]:
 def test_the_programs_of_docs_rig_ports_md_calibrate_and_measure(start: str, needs: str, sample: str,
                                                                  capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip(needs)
-    with node_process("double", ID_BASE, "--shared") as port, rig_of_page(port), \
+    with node_process("double", ID_BASE, "--shared") as port, \
             connected("slcan", f"socket://127.0.0.1:{port}") as node:
-        master = Master(node)
-        master.ask(0xFF, 0)
-        while not master.read(addresses(SCENE)["steps"], "<I"):
-            pass
+        load_scene(node, read_scene("s1"))
+        node.start_free_run(watchdog_ms=0)
         exec(program_of_page(start).replace(":4000", f":{port}"), {})
         out = capsys.readouterr().out
         assert "laconic_2" in out and len(re.findall(sample, out, re.M)) >= 5
+        master = Master(node)
         master.wait(deque(), 0.2)  # what the program has heard on the same bus
         master.answers.clear()
         master.ask(0xFF, 0)
