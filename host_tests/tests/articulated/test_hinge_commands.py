@@ -83,8 +83,9 @@ def test_every_output_of_a_scene_with_hinges_can_be_asked_for(tmp_path: Path) ->
 def test_the_warning_of_slip_names_the_wheel_that_lacks_most(wheel: int, tmp_path: Path,
                                                              capsys: pytest.CaptureFixture[str]) -> None:
     tables = two_wheels(friction_coefficient=0.05, motor_gain_Nm_per_V=0.5, motor_damping_Nms=0.5, caster=[CASTER])
+    tables |= {"initial": {}, "input": held(**{f"voltage_V__{wheel}": 12.0})}
     scene = tmp_path / "robot.toml"
-    scene.write_text("\n".join(lines_of(tables | {"input": held(**{f"voltage_V__{wheel}": 12.0})}, {})), encoding="utf-8")
+    scene.write_text("\n".join(lines_of(tables, {})), encoding="utf-8")
     _, out, err = told(["simulate", str(scene), "--json"], capsys)
     assert f"where wheel {wheel} would slip, by" in err
     assert json.loads(out)["no_slip"]["wheel"] == wheel
