@@ -240,7 +240,7 @@ class Scene:
         if refused.status == "overflow" and not refused.field:
             refused = refused.at("vehicle")  # of its numbers together
         if self.has_hinges:
-            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places)
+            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places, self.slips_on_hinges)
         return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
 
     def steps(self) -> int:
