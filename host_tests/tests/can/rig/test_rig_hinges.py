@@ -48,6 +48,15 @@ def shortened(name: str, real: str, steps: int) -> Scene:
     return replace(scene, outputs=replace(scene.outputs, every_s=scene.run.step_s, signals=()))
 
 
+def slipping(name: str, real: str, steps: int, friction: float = 0.4) -> Scene:
+    """The same on ground with friction."""
+    tables = tables_of(name, ground={"friction_coefficient": friction})
+    tables["vehicle"].pop("friction_coefficient", None)
+    scene = build_scene(tables).with_run(real=real)
+    scene = scene.with_run(duration_s=steps * scene.run.step_s)
+    return replace(scene, outputs=replace(scene.outputs, every_s=scene.run.step_s, signals=()))
+
+
 def of_simulate(scene: Scene) -> dict[str, np.ndarray]:
     """The columns of `laconic simulate` after each step, by the parts of a raw row."""
     columns = simulate(scene).columns
@@ -69,6 +78,14 @@ def assert_bits_of_simulate(run: LockstepRun, scene: Scene) -> None:
 
 def test_the_project_has_the_eight_scenes() -> None:
     assert len(HINGED) == 8
+
+
+@pytest.mark.parametrize("real", REALS)
+@pytest.mark.parametrize("name", HINGED)
+def test_the_node_gives_the_bits_of_simulate_where_wheels_slip(name: str, real: str) -> None:
+    scene = slipping(name, real, 300)
+    with virtual_node(real) as node:
+        assert_bits_of_simulate(run_lockstep(node, scene, fd=True), scene)
 
 
 @pytest.mark.parametrize("real", REALS)
