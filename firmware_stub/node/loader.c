@@ -80,10 +80,9 @@ bool laconic_loader_find(laconic_loader_place *place, uint8_t field, uint8_t k) 
 #endif
 
 /* In a node with hinges, of ground with friction under them. */
-#define FIRST_OF_SLIP 121U
-#define LAST_OF_SLIP 139U
 static bool is_of_slip(uint8_t field) {
-    return !LACONIC_NODE_WITH_SLIP && field >= FIRST_OF_SLIP && field <= LAST_OF_SLIP;
+    const bool numbered = field >= LACONIC_WIRE_FIELD_BODY_COM_Z && field <= LACONIC_WIRE_FIELD_CREEP;
+    return !LACONIC_NODE_WITH_SLIP && numbered && field != LACONIC_WIRE_FIELD_HINGE_ANGLE; /* an input */
 }
 
 /* Fields of laconic.dbc that are not in the table: of a motor, which the rig fits, and what this build leaves out. */

@@ -244,7 +244,8 @@ static void hold(laconic_articulated_input *input) {
     memset(input->twist_rate, 0, sizeof input->twist_rate);
 }
 
-/* Forces and rates become 0, or before the first step those of the start; steered wheels keep their direction. */
+/* Forces and rates become 0, or before the first step those of the start; steered wheels and the angles of servos keep
+ * their direction. */
 void laconic_node_clear_hinge_inputs(laconic_node *node) {
     laconic_node_hinges *hinges = &node->hinges;
     const bool at_start = node->plant.steps == 0;
@@ -253,6 +254,9 @@ void laconic_node_clear_hinge_inputs(laconic_node *node) {
         if (at_start) hinges->input[k] = hinges->first;
         memcpy(hinges->input[k].twist, at_start ? hinges->first.twist : hinges->twist, sizeof hinges->twist);
     }
+#if LACONIC_NODE_WITH_SLIP
+    if (at_start) memcpy(hinges->angle_rad, hinges->start.hinge_angle_rad, sizeof hinges->angle_rad);
+#endif
     hinges->changes = false;
 }
 

@@ -88,6 +88,44 @@ def test_the_node_gives_the_bits_of_simulate_where_wheels_slip(name: str, real: 
         assert_bits_of_simulate(run_lockstep(node, scene, fd=True), scene)
 
 
+def equipped(real: str, steps: int) -> Scene:
+    """A tricycle whose front wheel has a servo and whose trailer a hitch: every further number of ground with friction
+    but those of a motor's loop, which the second body has."""
+    wheel = {"kind": "fixed", "axle_deg": -90.0, "driven": False}
+    front = wheel | {"x_m": 0.5, "y_m": 0.0, "steered": "servo", "name": "front", "mass_kg": 1.0,
+                     "yaw_inertia_kgm2": 0.01, "servo_gain_Nm_per_rad": 60.0, "servo_damping_Nms": 1.5,
+                     "servo_limit_Nm": 3.0, "stop_low_rad": -0.2, "stop_high_rad": 0.3, "dry_friction_Nm": 0.05,
+                     "control_period_s": 0.01, "scrub_radius_m": 0.01, "scrub_fade_m": 0.1, "creep": 0.1}
+    arm = {"name": "arm", "hinge": "motor", "hinge_x_m": -0.4, "hinge_y_m": 0.0, "mass_kg": 2.0,
+           "yaw_inertia_kgm2": 0.05, "com_x_m": -0.2, "com_y_m": 0.0, "com_z_m": 0.1,
+           "motor": {"resistance_ohm": 0.5, "torque_constant_Nm_per_A": 0.05, "back_emf_Vs_per_rad": 0.05,
+                     "gear_ratio": 5.0, "viscous_friction_Nms": 0.002, "current_limit_A": 3.0},
+           "loop_V_per_rad": 8.0, "loop_Vs_per_rad": 0.5, "hitch": True}
+    vehicle = {"mass_kg": 20.0, "yaw_inertia_kgm2": 1.0, "com_z_m": 0.1, "com_x_m": 0.1, "wheel_radius_m": 0.1,
+               "wheel_inertia_kgm2": 0.01, "motor_gain_Nm_per_V": 0.5, "motor_damping_Nms": 0.3,
+               "wheel": [wheel | {"x_m": 0.0, "y_m": 0.2, "driven": True},
+                         wheel | {"x_m": 0.0, "y_m": -0.2, "driven": True}, front,
+                         wheel | {"x_m": -0.4, "y_m": 0.0, "body": "arm"}], "body": [arm]}
+    tables = {"vehicle": vehicle, "ground": {"friction_coefficient": 0.4}, "initial": {"velocity_body_m_per_s": [0.5, 0]},
+              "run": {"step_s": 0.005, "duration_s": 1.0, "real": real},
+              "input": [{"signal": "voltage_V[1]", "kind": "steps", "t_s": [0.0], "value": [9.0]},
+                        {"signal": "voltage_V[2]", "kind": "steps", "t_s": [0.0], "value": [3.0]},
+                        {"signal": "steering_angle_rad[front]", "kind": "steps", "t_s": [0.0], "value": [0.6]},
+                        {"signal": "steering_angle_rad[arm]", "kind": "steps", "t_s": [0.0], "value": [-0.5]}]}
+    scene = build_scene(tables)
+    scene = scene.with_run(duration_s=steps * scene.run.step_s)
+    return replace(scene, outputs=replace(scene.outputs, every_s=scene.run.step_s, signals=()))
+
+
+@pytest.mark.parametrize("real", REALS)
+def test_servos_loops_stops_hitches_scrub_and_creep_have_the_bits_of_simulate(real: str) -> None:
+    scene = equipped(real, 400)
+    with virtual_node(real) as node:
+        run = run_lockstep(node, scene, fd=True)
+        assert_bits_of_simulate(run, scene)
+        assert judge_scaled(node, scene, scene.steps(), {}).passed
+
+
 @pytest.mark.parametrize("real", REALS)
 @pytest.mark.parametrize("name", HINGED)
 def test_the_node_gives_the_bits_of_simulate(name: str, real: str) -> None:
@@ -110,6 +148,15 @@ def test_an_emulated_board_gives_them_for_all_eight(board: str) -> None:
     with emulated_node(board) as node:
         for name in HINGED:
             scene = shortened(name, real, 12)
+            assert_bits_of_simulate(run_lockstep(node, scene), scene)
+
+
+@pytest.mark.skipif(why_no_emulation() is not None, reason=str(why_no_emulation()))
+def test_an_emulated_board_gives_them_where_wheels_slip() -> None:
+    with emulated_node("an386-slip") as node:
+        assert_bits_of_simulate(run_lockstep(node, equipped("single", 60)), equipped("single", 60))
+        for name in HINGED[:2]:
+            scene = slipping(name, "single", 20)
             assert_bits_of_simulate(run_lockstep(node, scene), scene)
 
 
