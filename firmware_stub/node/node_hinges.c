@@ -344,8 +344,7 @@ bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t 
     if (!node->hinges.here || page > TWIST_PAGE || (page == TWIST_PAGE && !node->hinges.model.coordinated))
         return false;
 #if LACONIC_NODE_WITH_SLIP
-    if (node->hinges.slips)
-        return set_three_targets(&node->hinges, voltages, 3 * (int32_t)(page % 3U), number);
+    if (node->hinges.slips) return set_three_targets(&node->hinges, voltages, 3 * (int32_t)(page % 3U), number);
 #endif
     if (page == TWIST_PAGE) {
         set_twist(&node->hinges, number);

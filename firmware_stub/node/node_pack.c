@@ -48,8 +48,7 @@ static uint32_t version(void) {
 #define METHOD_BITS 8 /* of IDENTITY.methods; a later method has none, and COMMIT refuses one that is not there */
 
 static void pack_identity(const laconic_node *node, uint8_t *data) {
-    data[1] = (uint8_t)(speaks_fd(node) << 4 | LACONIC_NODE_WITH_HINGES << 5 |
-                        LACONIC_NODE_WITH_SLIP << 6);
+    data[1] = (uint8_t)(speaks_fd(node) << 4 | LACONIC_NODE_WITH_HINGES << 5 | LACONIC_NODE_WITH_SLIP << 6);
     data[2] = LACONIC_WIRE_VERSION;
     put16(data + 3, version());
     data[5] = sizeof(laconic_real);

@@ -95,7 +95,7 @@ typedef struct laconic_node_hinges {
     laconic_articulated_integrator integrator;
     laconic_articulated_state state;
 #if LACONIC_NODE_WITH_SLIP
-    laconic_tree_state tree; /* of a vehicle that slips                                       */
+    laconic_tree_state tree;                    /* of a vehicle that slips                                       */
     laconic_real angle_rad[LACONIC_MAX_BODIES]; /* targets of its servos and loops               */
 #endif
     laconic_real twist[3];              /* at the end of the last step                           */

@@ -18,12 +18,12 @@
 #define LACONIC_RAW_TAKES 0x8FU    /* all of these                          */
 
 /* The same for hinges, H of them; their numbers follow those of the input. Sampled inputs are two: start and end. */
-#define LACONIC_RAW_HINGE_VOLTAGE 1U /* H numbers                             */
-#define LACONIC_RAW_HINGE_TORQUE 2U  /* H numbers                             */
-#define LACONIC_RAW_STEERING_RATE 4U /* H numbers: rates of prescribed hinges */
-#define LACONIC_RAW_TWIST 8U         /* 3 numbers                             */
+#define LACONIC_RAW_HINGE_VOLTAGE 1U   /* H numbers                             */
+#define LACONIC_RAW_HINGE_TORQUE 2U    /* H numbers                             */
+#define LACONIC_RAW_STEERING_RATE 4U   /* H numbers: rates of prescribed hinges */
+#define LACONIC_RAW_TWIST 8U           /* 3 numbers                             */
 #define LACONIC_RAW_STEERING_ANGLE 16U /* H numbers: of servos and loops, where wheels may slip */
-#define LACONIC_RAW_HINGE_TAKES 31U  /* all of these                          */
+#define LACONIC_RAW_HINGE_TAKES 31U    /* all of these                          */
 
 /* Bits of SELECT for the numbers in RAW_OUTPUT, which follow in this order. */
 #define LACONIC_RAW_NU 1U          /* 3; neither these nor the energy in images that play drives alone */
