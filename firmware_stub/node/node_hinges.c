@@ -453,40 +453,6 @@ void laconic_node_collect_hinges(laconic_raw_output *raw, const laconic_node *no
                                &node->input[0]);
 }
 
-void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node) {
-    laconic_articulated_motion motion;
-    if (!node->hinges.here) {
-        laconic_pose_of(pose, &node->plant.model, &node->plant.state);
-        return;
-    }
-    laconic_node_motion_of(&motion, node);
-    pose->x_m = motion.x_m;
-    pose->y_m = motion.y_m;
-    pose->heading_rad = motion.heading_rad;
-    pose->heading_wrapped_rad = laconic_angle_wrapped(motion.heading_rad);
-}
-
-void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node) {
-    laconic_articulated_motion motion;
-    if (!node->hinges.here) {
-        laconic_plant_wheel_speeds(&node->plant, speed_rad_per_s);
-        return;
-    }
-    laconic_node_motion_of(&motion, node);
-    memcpy(speed_rad_per_s, motion.wheel_speed_rad_per_s,
-           (size_t)node->hinges.model.wheel_count * sizeof *speed_rad_per_s);
-}
-
-void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node) {
-    laconic_articulated_motion motion;
-    if (!node->hinges.here) {
-        laconic_plant_wheel_angles(&node->plant, angle_rad);
-        return;
-    }
-    laconic_node_motion_of(&motion, node);
-    memcpy(angle_rad, motion.wheel_angle_rad, (size_t)node->hinges.model.wheel_count * sizeof *angle_rad);
-}
-
 #else
 typedef int laconic_node_has_no_hinges; /* a file without a declaration is no C */
 #endif

@@ -212,7 +212,7 @@ laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t n
 void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node);
 /* Reads the chosen outputs. */
 void laconic_node_collect_hinges(laconic_raw_output *raw, const laconic_node *node);
-/* Of every vehicle. */
+/* node_pack.c: of every vehicle. */
 void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node);
 void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node);
 void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node);

@@ -29,7 +29,8 @@ HINGE_LISTS = {name: SOURCE_DIR / "core_c" / "include" / "laconic" / f"{name}.h"
 HINGE_ROW = re.compile(r"X\(of, *\d+, *(\w+), *(\w+), *\w+, *(\w+),[\s\\]*\w+,[\s\\]*(\w+)\)")
 ONLY_REFUSED = ("HINGE_VOLTAGE", "HINGE_TORQUE", "HINGE_ACCELERATION", "TWIST_RATE", "HINGE_ANGLE")
 """Inputs, which are only named in refusals."""
-HINGE_ITEMS = {**dict.fromkeys(("WHEEL_LOAD", "SCRUB_RADIUS", "SCRUB_FADE", "CREEP"), WHEEL), "WHEEL_BODY": WHEEL, "BODY_COUNT": NONE, "START_VELOCITY": "1, 2", "START_YAW_RATE": NONE,
+HINGE_ITEMS = {**dict.fromkeys(("WHEEL_LOAD", "SCRUB_RADIUS", "SCRUB_FADE", "CREEP"), WHEEL),
+               "WHEEL_BODY": WHEEL, "BODY_COUNT": NONE, "START_VELOCITY": "1, 2", "START_YAW_RATE": NONE,
                "TWIST": COMPONENT}
 HINGE_NOTES = {"BODY_PARENT": "a body before it; 0: the carriage", "BODY_COUNT": "bodies on hinges; 0: none",
                "BODY_HINGE": "1 free, 2 motor, 3 prescribed, 4 coordinated", "WHEEL_BODY": "its body; 0: the carriage",

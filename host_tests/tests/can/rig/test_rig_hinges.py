@@ -106,7 +106,8 @@ def equipped(real: str, steps: int) -> Scene:
                "wheel": [wheel | {"x_m": 0.0, "y_m": 0.2, "driven": True},
                          wheel | {"x_m": 0.0, "y_m": -0.2, "driven": True}, front,
                          wheel | {"x_m": -0.4, "y_m": 0.0, "body": "arm"}], "body": [arm]}
-    tables = {"vehicle": vehicle, "ground": {"friction_coefficient": 0.4}, "initial": {"velocity_body_m_per_s": [0.5, 0]},
+    tables = {"vehicle": vehicle, "ground": {"friction_coefficient": 0.4},
+              "initial": {"velocity_body_m_per_s": [0.5, 0]},
               "run": {"step_s": 0.005, "duration_s": 1.0, "real": real},
               "input": [{"signal": "voltage_V[1]", "kind": "steps", "t_s": [0.0], "value": [9.0]},
                         {"signal": "voltage_V[2]", "kind": "steps", "t_s": [0.0], "value": [3.0]},
@@ -256,6 +257,16 @@ def test_a_step_that_the_core_refuses_is_refused_by_the_node_too() -> None:
     with virtual_node() as node:
         judgement = judge_same_bits(node, build_scene(tables_of("frc_swerve_mk4i", input=twist)), 60)
     assert "the node refuses sync: twist zero" in judgement.verdicts[0].detail
+
+
+def test_a_node_without_slip_names_the_remedy() -> None:
+    with virtual_node("double") as node:
+        twin = HingedTwin(slipping("mir_like", "double", 5))
+        node.open()
+        assert node.identity and node.identity.slip
+        node.identity = replace(node.identity, slip=False)
+        with pytest.raises(BadInput, match="ground.friction_coefficient: .*--board an386-slip, or take it out$"):
+            load_hinged(node, twin)
 
 
 def test_a_node_without_hinges_names_the_remedy() -> None:

@@ -142,9 +142,9 @@ def load_hinged(node: NodeClient, twin: HingedTwin, more: Iterable[Parameter] = 
         raise BadInput(f"{scene.path}: the node does not take vehicles with hinges; use one that is built with "
                        "LACONIC_NODE_WITH_HINGES=1, such as --board an386-hinges")
     if twin.slips and not identity.slip:
-        raise BadInput(f"{scene.path}: ground.friction_coefficient: the node takes vehicles with hinges on ideal ground "
-                       "alone; use one that is built with LACONIC_NODE_WITH_SLIP=1, such as --board an386-slip, or take "
-                       "it out")
+        raise BadInput(f"{scene.path}: ground.friction_coefficient: the node takes vehicles with hinges on "
+                       "ideal ground alone; use one that is built with LACONIC_NODE_WITH_SLIP=1, such as --board "
+                       "an386-slip, or take it out")
     if identity.real != scene.run.real:
         raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
                        f"give --real {identity.real}, or another node")
