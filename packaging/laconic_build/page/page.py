@@ -11,7 +11,7 @@ from pathlib import Path
 from laconic_build.page.bundle import bundle, read, without_types
 from laconic_build.page.scenes import scenes_in
 
-MOST_BYTES = 400_000
+MOST_BYTES = 440_000
 
 
 class TooLarge(Exception):

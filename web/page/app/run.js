@@ -51,7 +51,7 @@ export class Run {
     this.fleet = [];
     if (how.fleet) this.addFleet();
     this.parts = Math.max(1, Math.ceil(how.step_s / REFERENCE_STEP_S - 1e-9));
-    this.layout = hasHinges(scene) ? layoutOf(scene.vehicle) : undefined;
+    this.layout = hasHinges(scene) ? layoutOf(scene) : undefined;
     this.trails = this.layout && new Trails(this.layout);
     // Commands of hinges end with a step, so finer steps would have others.
     this.reference = this.layout ? undefined : referenceOf(laconic, scene, how.step_s / this.parts);
@@ -129,8 +129,20 @@ export class Run {
     } finally {
       const taken = robot.steps - begin;
       this.steps += taken;
-      for (const other of others) other.robot.run(taken);
+      for (const other of others) this.takeBeside(other, taken);
       this.reference?.robot.run(taken * this.parts);
+    }
+  }
+
+  /** The robot without slip may come to a stop that the other has not: it ends there alone. */
+  takeBeside(/** @type {Actor} */ actor, /** @type {number} */ steps) {
+    try {
+      actor.robot.run(steps);
+    } catch (refused) {
+      if (actor !== this.ideal) throw refused;
+      this.idealRefused = /** @type {Error} */ (refused).message;
+      this.ideal.robot.free();
+      this.ideal = undefined;
     }
   }
 
