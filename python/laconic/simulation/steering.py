@@ -162,7 +162,8 @@ class Commands:
         targets = None if column is None else given[:, 1, column]
         self._go_to(hinge, rows, targets, first, np.zeros(len(rows)))
 
-    def _go_to(self, hinge: Hinge, rows: np.ndarray, targets: np.ndarray | None, first: int, reached: np.ndarray) -> None:
+    def _go_to(self, hinge: Hinge, rows: np.ndarray, targets: np.ndarray | None, first: int, reached: np.ndarray
+               ) -> None:
         """The same towards given angles, or along the rates in `rows`; `reached` gets the angle at each step's end."""
         slot, h = self.vehicle.slot(f"{RATE}[{hinge.name}]"), self.inputs.step_s
         angle, most = self._angle[hinge.name], hinge.rate_limit_rad_per_s

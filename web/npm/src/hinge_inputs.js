@@ -1,7 +1,6 @@
 // What acts on a vehicle with hinges, by names: checked, so that a refused input changes nothing.
-import { askFinite, askKeys, askNumbers, askTable } from "./checks.js";
+import { PLAIN_INPUTS, askFinite, askKeys, askNumbers, askTable, plainValues } from "./checks.js";
 import { CARRIAGE } from "./hinge_tables.js";
-import { PLAIN_INPUTS, plainValues } from "./inputs.js";
 import { Refused } from "./refused.js";
 import { inPlace } from "./scene.js";
 

@@ -1,6 +1,6 @@
 /* The core as JavaScript sees it: one struct a robot, numbers set by the core's own list of fields. With
  * LACONIC_WEB_HINGES these files make the module of vehicles with hinges (hinged.c), without it that of all others
- * (robot.c, outputs.c, wanted.c, hash.c).
+ * (robot.c, wanted.c, hash.c).
  *
  * JavaScript has no structs. It names a number of the robot by its field (vehicle.h) and item, as frames on the wire
  * do, and reads outputs by the offsets that laconic_web_output() tells. Every pointer is an offset in the module's
