@@ -35,7 +35,7 @@ static void copy_twist(laconic_real to[3], const laconic_real from[3]) {
     for (int k = 0; k < 3; k++) to[k] = from[k];
 }
 
-/* Puts the vehicle at its start, where the inputs already act; wheels_stand: their speeds are given. Returns a status. */
+/* Puts the vehicle at its start, where the inputs act; returns a status. wheels_stand: their speeds are given. */
 WEB_EXPORT(laconic_web_place) int32_t laconic_web_place(laconic_web_robot *robot, bool wheels_stand) {
     laconic_articulated_start *start = &robot->tree_start.hinged;
     start->x_m = robot->start.x_m;
