@@ -20,7 +20,7 @@ from laconic_build.page.browser import Browser
 
 SHOTS = PAGE.parent
 HINGED = [name for name in scene_names() if file_has_hinges(scene_path(name))]
-LIMITED = ("frc_swerve_mk4i", "f1tenth", "pr2_base", "tugger_train")
+LIMITED = ("frc_swerve_mk4i", "f1tenth", "pr2_base", "tugger_train", "swerve_module_off", "trailer_on_ice")
 CUT_OFF = """return [...document.querySelectorAll('button, select, label, output, h1, h2, summary, dd, #hinges span')]
     .filter((each) => each.checkVisibility() && each.offsetWidth > 4 && !each.closest('.segments'))
     .filter((each) => each.scrollWidth > each.clientWidth + 1 && each.clientWidth > 0 && each.tagName !== 'SELECT')
