@@ -101,7 +101,7 @@ export class Run {
   set(/** @type {Record<string, number>} */ signals) {
     if (sameSignals(signals, this.signals)) return;
     const input = inputOf(signals, this.main.robot.wheelCount);
-    for (const { robot } of this.actors) robot.setInput(input);
+    for (const actor of this.actors) this.beside(actor, (robot) => robot.setInput(input));
     this.reference?.robot.setInput(input);
     this.signals = { ...signals };
     const last = this.changes.at(-1);
@@ -129,15 +129,16 @@ export class Run {
     } finally {
       const taken = robot.steps - begin;
       this.steps += taken;
-      for (const other of others) this.takeBeside(other, taken);
+      for (const other of others) this.beside(other, (robot) => robot.run(taken));
       this.reference?.robot.run(taken * this.parts);
     }
   }
 
-  /** The robot without slip may come to a stop that the other has not: it ends there alone. */
-  takeBeside(/** @type {Actor} */ actor, /** @type {number} */ steps) {
+  /** The robot without slip may refuse a start or a stop that the other takes: it ends there alone.
+   * @param {Actor} actor @param {(robot: any) => void} act */
+  beside(actor, act) {
     try {
-      actor.robot.run(steps);
+      act(actor.robot);
     } catch (refused) {
       if (actor !== this.ideal) throw refused;
       this.idealRefused = /** @type {Error} */ (refused).message;

@@ -145,6 +145,13 @@ def test_wheels_that_slip_on_hinges_are_shown_and_end_where_the_command_brings_t
     assert simulated(exported(page, tmp_path)) == pose(page)
 
 
+def test_a_start_that_the_robot_without_slip_refuses_ends_that_one_alone(page):
+    choose(page, "trailer_on_ice")
+    page.choose("turn", str(most(page, "turn")))
+    step(page, 2)
+    assert page.text("banner") == "" and page.text("ideal-note").startswith("initial.velocity_body_m_per_s: this start")
+
+
 def test_one_module_that_is_straightened_lets_all_wheels_hold(page, tmp_path):
     page.choose("robot", "swerve_module_off")
     step(page, 20)
