@@ -397,7 +397,7 @@ def picture(rows: Sequence[Row], file: Path) -> None:
     axes.set_xlabel("step in ms")
     axes.set_ylabel("error of the place at the end in mm\n(less than 1e-9 is drawn there)")
     lines = {name: Line2D([], [], color=f"C{at}", linewidth=3) for at, name in enumerate(names)}
-    lines |= {which: Line2D([], [], marker=mark[0], linestyle=mark[1:], color="k") for which, mark in marks.items()}
+    lines |= {which: axes.plot([], [], mark, color="k")[0] for which, mark in marks.items()}
     figure.legend(lines.values(), lines.keys(), fontsize=10, loc="outside lower center", ncols=2, frameon=False)
     figure.savefig(file, metadata={"Date": None})
 

@@ -28,10 +28,12 @@ from laconic.cli.main import run as laconic
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.scene import read_scene, rigid_scene_names
+from laconic.scene.ground import slips
 from laconic.scene.scene_tables import scene_tables
 from laconic.simulation import simulate
 
-HINGED = tuple(name for name in scene_names() if name not in rigid_scene_names())
+HINGED = tuple(name for name in scene_names() if name not in rigid_scene_names()
+               and not slips(read_scene(name).vehicle))
 SIGNALS = {"pose": ("x_m", "y_m", "heading_rad"), "velocity": ("velocity_body_m_per_s", "yaw_rate_rad_per_s"),
            "wheel_speed": ("wheel_speed_rad_per_s",), "wheel_angle": ("wheel_angle_rad",),
            "hinge_angle": ("hinge_angle_rad",), "hinge_rate": ("hinge_rate_rad_per_s",)}
