@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from bag_support import HALF_TRACK_M, RADIUS_M, scene_of
+from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.robot.replay.rolling import path_of
 from recorded_data import recorded
@@ -207,7 +208,7 @@ def test_steered_vehicles_are_exported_for_their_controllers(kind, controller, b
     assert "offset of the steering" in page and "mm/m ahead" in page and "rollers" not in page
     log, mapping = tmp_path / "run.csv", tmp_path / "map.toml"
     assert run(["audit", str(log), str(scene), "--map", str(mapping), "--export", str(tmp_path / "new.toml")]) == 2
-    assert "a scene with hinges is not written; export .yaml or .h" in capsys.readouterr().err
+    assert "a scene with steered wheels is not written; export .yaml or .h" in capsys.readouterr().err
 
 
 TRICYCLE = recorded("tricycle")
@@ -245,7 +246,7 @@ def test_a_recorded_car_is_audited_by_the_map_that_is_guessed(tmp_path, capsys):
 
 HUNG = {
     "casters": ('[[vehicle.caster]]\nname = "rear_left"\nx_m = -0.4\ny_m = 0.3\ntrail_m = 0.035\nradius_m = 0.0375\n'
-                '[[vehicle.caster]]\nname = "rear_right"\nx_m = -0.4\ny_m = -0.3\ntrail_m = 0.035\nradius_m = 0.0375\n'),
+                '[[vehicle.caster]]\nname = "rear_right"\nx_m = -0.4\ny_m = -0.3\ntrail_m = 0.035\nradius_m = 0.03\n'),
     "a trailer": ('[[vehicle.trailer]]\nname = "cart"\nhitch_x_m = -0.3\nlength_m = 0.6\ntrack_m = 0.4\n'
                   'mass_kg = 10.0\nyaw_inertia_kgm2 = 0.5\nradius_m = 0.05\n')}
 TRUE_RADIUS, TRUE_TRACK = 1.01, 1.02
@@ -340,3 +341,18 @@ def test_the_track_of_a_robot_with_casters_is_found_without_angles_of_them(hung_
     found = {each["name"]: each["value"] for each in json.loads(capsys.readouterr().out)["parameters"]}
     assert found["track"] == pytest.approx(0.5 * TRUE_TRACK, rel=1e-4)
     assert found["radius of wheel 1"] == pytest.approx(0.0625 * TRUE_RADIUS, rel=1e-4)
+
+
+def test_wheels_that_roll_along_do_not_distort_the_driven_ones_of_a_tugger_with_trailers(tmp_path, capsys):
+    scene = scene_path("tugger_train").read_text()
+    worn = scene.replace("wheel_radius_m = 0.2\n", f"wheel_radius_m = {0.2 * TRUE_RADIUS}\n")
+    assert worn != scene
+    (tmp_path / "truth.toml").write_text(worn)
+    assert run(["simulate", str(tmp_path / "truth.toml"), "--bag", str(tmp_path / "d.mcap")]) == 0
+    capsys.readouterr()
+    assert run(["identify", str(tmp_path / "d.mcap"), "--scene", "tugger_train", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    radii = [each["value"] for each in found["parameters"] if each["name"].startswith("radius")]
+    assert radii == pytest.approx([0.2 * TRUE_RADIUS] * 2, rel=5e-4)
+    assert any("wheel 3: how far it turns is left out" in each for each in found["words"])
+    assert any("hinge first, hinge second, hinge third: left out" in each for each in found["words"])

@@ -14,7 +14,6 @@ from laconic.robot.identify.study import Study, fitted_scene, parts
 from laconic.scene.scene_text import Comments, lines_of
 from laconic.scene.table import read_toml
 
-
 HUNG_AT = {"caster": ("x_m", "y_m"), "trailer": ("hitch_x_m", "hitch_y_m"), "body": ("hinge_x_m", "hinge_y_m")}
 """The keys of each table that say where on the carriage it hangs."""
 

@@ -201,6 +201,25 @@ def without_free(log: Log, scene: Scene) -> Log:
         f"hinge {name}" for name in log.hinge_names if name in free])
 
 
+def driven_alone(log: Log, scene: Scene) -> Log:
+    """The log without turning of wheels that roll along, where driven ones tell the way: a fit frees the radii of those
+    alone."""
+    is_driven = np.array([wheel.get("driven", True) for wheel in scene.vehicle["wheel"]])
+    values = log.wheel_angle_rad if log.wheel_angle_rad is not None else log.wheel_speed_rad_per_s
+    if values is None or values.shape[1] != len(is_driven):
+        return log
+    measured = ~np.isnan(values).any(axis=0)
+    others = measured & ~is_driven
+    others[wheels_behind(scene, {each.name for each in scene.hinges if each.kind == FREE} - {*log.hinge_names})] = False
+    if not others.any() or not (measured & is_driven).any():
+        return log
+    found = _reordered(log, lambda of_wheels: np.where(others, np.nan, of_wheels))
+    names = ", ".join(f"wheel {index + 1}" for index in np.flatnonzero(others))
+    return replace(found, remarks=(*log.remarks, f"{names}: how far it turns is left out, as it is not driven"
+                                   if others.sum() == 1 else
+                                   f"{names}: how far they turn is left out, as they are not driven"))
+
+
 def wheels_behind(scene: Scene, names: Container[str]) -> list[int]:
     """Indices of wheels behind hinges of some names, with other hinges between or without."""
     parents = {hinge.name: body["parent"] for hinge, body in zip(scene.hinges, scene.vehicle["body"], strict=True)}
@@ -221,5 +240,5 @@ def _told(log: Log, names: Sequence[str]) -> Log:
     """With a remark that these were left out."""
     if not names:
         return log
-    return replace(log, remarks=(*log.remarks, f"{', '.join(names)}: left out, as nobody drives or steers them; to take "
-                                 "such angles as measured, name hinges under [steering_angle] of a map"))
+    return replace(log, remarks=(*log.remarks, f"{', '.join(names)}: left out, as nobody drives or steers them; to "
+                                 "take such angles as measured, name hinges under [steering_angle] of a map"))
