@@ -4,22 +4,23 @@
         run = run_lockstep(node, scene, steps=10_000)
     run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type,
                      in the order of Plant.row(); then what the scene's sensors show
+
+Latency of answers: figures over all exchanges of a run.
 """
 
 from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from laconic.can.rig.client import Identity, NodeClient
+from laconic.can.rig.client import Identity, NodeClient, is_estimated
 from laconic.can.rig.errors import NodeSilent
-from laconic.can.rig.estimated import is_estimated
 from laconic.can.rig.hinged import RAW_OUTPUTS, HingedTwin, load_hinged, raw_columns, raw_groups
 from laconic.can.rig.parameters import Parameter, method_number
 from laconic.can.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
@@ -285,3 +286,22 @@ def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:
         rows.append(row)
         done = int(tick)
     return np.array(rows)
+
+
+def latency_figures(seconds: Sequence[float]) -> dict[str, float]:
+    """Round trips in microseconds: least, median, 99th percentile, worst, and jitter (standard deviation)."""
+    if not len(seconds):
+        return {}
+    micro = 1e6 * np.asarray(seconds, float)
+    return {
+        "latency_min_us": float(micro.min()), "latency_median_us": float(np.median(micro)),
+        "latency_p99_us": float(np.percentile(micro, 99)), "latency_max_us": float(micro.max()),
+        "latency_jitter_us": float(micro.std())}
+
+
+def period_figures(instants_s: Sequence[float], period_s: float) -> dict[str, float]:
+    """Deviation of the intervals between cyclic frames from their period, in microseconds."""
+    if len(instants_s) < 2:
+        return {}
+    off = 1e6 * (np.diff(np.asarray(instants_s, float)) - period_s)
+    return {"period_us": 1e6 * period_s, "period_jitter_us": float(off.std()), "period_late_max_us": float(off.max())}
