@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from bag_support import HALF_TRACK_M, RADIUS_M, scene_of
+from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.robot.replay.rolling import path_of
 from recorded_data import recorded
@@ -207,7 +208,7 @@ def test_steered_vehicles_are_exported_for_their_controllers(kind, controller, b
     assert "offset of the steering" in page and "mm/m ahead" in page and "rollers" not in page
     log, mapping = tmp_path / "run.csv", tmp_path / "map.toml"
     assert run(["audit", str(log), str(scene), "--map", str(mapping), "--export", str(tmp_path / "new.toml")]) == 2
-    assert "a scene with hinges is not written; export .yaml or .h" in capsys.readouterr().err
+    assert "a scene with steered wheels is not written; export .yaml or .h" in capsys.readouterr().err
 
 
 TRICYCLE = recorded("tricycle")
@@ -241,3 +242,117 @@ def test_a_recorded_car_is_audited_by_the_map_that_is_guessed(tmp_path, capsys):
     capsys.readouterr()
     found = audited(capsys, log, mapping, Path("f1tenth"))
     assert found["nominal"] > 0.1 and found["found"] < 0.005
+
+
+HUNG = {
+    "casters": ('[[vehicle.caster]]\nname = "rear_left"\nx_m = -0.4\ny_m = 0.3\ntrail_m = 0.035\nradius_m = 0.0375\n'
+                '[[vehicle.caster]]\nname = "rear_right"\nx_m = -0.4\ny_m = -0.3\ntrail_m = 0.035\nradius_m = 0.03\n'),
+    "a trailer": ('[[vehicle.trailer]]\nname = "cart"\nhitch_x_m = -0.3\nlength_m = 0.6\ntrack_m = 0.4\n'
+                  'mass_kg = 10.0\nyaw_inertia_kgm2 = 0.5\nradius_m = 0.05\n')}
+TRUE_RADIUS, TRUE_TRACK = 1.01, 1.02
+BY_WHEELS = """[time]
+column = "time_s"
+[wheel_angle]
+columns = ["wheel_angle_rad[1]", "wheel_angle_rad[2]"]
+[pose]
+columns = ["x_m", "y_m", "heading_rad"]
+"""
+WITH_HINGES = """format = "bag"
+joints = "/joint_states"
+wheels = ["wheel_1_joint", "wheel_2_joint"]
+pose = "/ground_truth/odom"
+[steering_angle]
+columns = ["/joint_states.position[rear_left_hinge_joint]", "/joint_states.position[rear_right_hinge_joint]"]
+hinges = ["rear_left", "rear_right"]
+"""
+
+
+def hung_scene(folder: Path, name: str, hung: str, radius: float = 1.0, track: float = 1.0) -> Path:
+    """Two driven wheels, and what hangs behind them on free hinges."""
+    wheels = "".join(f'[[vehicle.wheel]]\nkind = "fixed"\nx_m = 0.0\ny_m = {side * 0.25 * track}\naxle_deg = -90\n'
+                     f"radius_m = {0.0625 * radius}\n" for side in (1, -1))
+    inputs = "".join(f'[[input]]\nsignal = "voltage_V[{wheel}]"\nkind = "table"\nt_s = [0, 1, 3, 5, 7, 9]\n'
+                     f"value = {values}\n" for wheel, values in
+                     ((1, [0, 12, 6, 12, 6, 12]), (2, [0, 12, 12, 6, 6, 12])))
+    path = folder / f"{name}.toml"
+    path.write_text('name = "hung"\nsource = "made up"\n[vehicle]\nmass_kg = 45.0\nyaw_inertia_kgm2 = 3.75\n'
+                    "wheel_radius_m = 0.0625\nwheel_inertia_kgm2 = 1.6e-3\nmotor_gain_Nm_per_V = 2.0\n"
+                    f"motor_damping_Nms = 3.0\n{wheels}{HUNG[hung]}{inputs}[run]\nduration_s = 9.0\nstep_s = 0.01\n")
+    return path
+
+
+@pytest.fixture(scope="module")
+def hung_runs(tmp_path_factory) -> dict[str, tuple[Path, Path]]:
+    """(bag, table) of true robots whose wheels and track differ from the scene's."""
+    found = {}
+    for number, hung in enumerate(HUNG):
+        folder = tmp_path_factory.mktemp(f"hung{number}")
+        truth = hung_scene(folder, "truth", hung, TRUE_RADIUS, TRUE_TRACK)
+        assert run(["simulate", str(truth), "--bag", str(folder / "d.mcap"), "--out", str(folder / "d.csv")]) == 0
+        found[hung] = folder / "d.mcap", folder / "d.csv"
+    return found
+
+
+def assert_holds_the_truth(parameters: list[dict]) -> None:
+    """Radii and distance within what the intervals of a log without noise leave to its sampling."""
+    truths = {"radius of wheel 1": 0.0625 * TRUE_RADIUS, "radius of wheel 2": 0.0625 * TRUE_RADIUS,
+              "distance of the wheels": TRUE_TRACK}
+    found = {each["name"]: each["value"] for each in parameters}
+    assert {name: found[name] for name in truths} == pytest.approx(truths, rel=2e-5)
+
+
+@pytest.mark.parametrize("hung", HUNG)
+@pytest.mark.parametrize("kind", ["bag", "table"])
+def test_what_hangs_on_free_hinges_does_not_distort_a_differential_robot(kind, hung, hung_runs, tmp_path, capsys):
+    scene, log = hung_scene(tmp_path, "scene", hung), hung_runs[hung][kind == "table"]
+    (tmp_path / "map.toml").write_text(BY_WHEELS)
+    mapping = ["--map", str(tmp_path / "map.toml")] if kind == "table" else []
+    assert run(["identify", str(log), "--scene", str(scene), *mapping, "--json"]) == 0, capsys.readouterr().err
+    assert_holds_the_truth(json.loads(capsys.readouterr().out)["parameters"])
+    files = [tmp_path / "control.yaml", tmp_path / "fitted.toml"]
+    assert run(["audit", str(log), str(scene), *mapping, "--json", "--export", str(files[0]), "--export",
+                str(files[1])]) == 0, capsys.readouterr().err
+    found = json.loads(capsys.readouterr().out)
+    assert_holds_the_truth(found["fit"]["parameters"])
+    assert found["nominal"] > 0.005 and found["found"] < 1e-5
+    multiplier = re.search(r"wheel_separation_multiplier: (\S+)", files[0].read_text())
+    assert multiplier and float(multiplier[1]) == pytest.approx(TRUE_TRACK, rel=2e-5)
+    assert run(["replay", str(log), str(files[1]), "--inputs", "wheel-speeds", *mapping, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-5
+
+
+def test_a_remark_says_that_free_hinges_were_left_out_and_a_map_takes_them(hung_runs, tmp_path, capsys):
+    scene, log = hung_scene(tmp_path, "scene", "casters"), hung_runs["casters"][0]
+    said = "d: wheel 3, wheel 4, hinge rear_left, hinge rear_right: left out"
+    (tmp_path / "map.toml").write_text(WITH_HINGES)
+    errors = []
+    for mapping, count in (([], 1), (["--map", str(tmp_path / "map.toml")], 0)):
+        assert run(["replay", str(log), str(scene), "--inputs", "wheel-speeds", *mapping, "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert sum(each.startswith(said) for each in found["remarks"]) == count
+        errors.append(found["runs"][0]["path_error"])
+    assert errors[0] > 1.1 * errors[1] > 0.0
+
+
+def test_the_track_of_a_robot_with_casters_is_found_without_angles_of_them(hung_runs, tmp_path, capsys):
+    scene = hung_scene(tmp_path, "scene", "casters")
+    assert run(["identify", str(hung_runs["casters"][0]), "--scene", str(scene), "--free", "radius,track",
+                "--json"]) == 0, capsys.readouterr().err
+    found = {each["name"]: each["value"] for each in json.loads(capsys.readouterr().out)["parameters"]}
+    assert found["track"] == pytest.approx(0.5 * TRUE_TRACK, rel=1e-4)
+    assert found["radius of wheel 1"] == pytest.approx(0.0625 * TRUE_RADIUS, rel=1e-4)
+
+
+def test_wheels_that_roll_along_do_not_distort_the_driven_ones_of_a_tugger_with_trailers(tmp_path, capsys):
+    scene = scene_path("tugger_train").read_text()
+    worn = scene.replace("wheel_radius_m = 0.2\n", f"wheel_radius_m = {0.2 * TRUE_RADIUS}\n")
+    assert worn != scene
+    (tmp_path / "truth.toml").write_text(worn)
+    assert run(["simulate", str(tmp_path / "truth.toml"), "--bag", str(tmp_path / "d.mcap")]) == 0
+    capsys.readouterr()
+    assert run(["identify", str(tmp_path / "d.mcap"), "--scene", "tugger_train", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    radii = [each["value"] for each in found["parameters"] if each["name"].startswith("radius")]
+    assert radii == pytest.approx([0.2 * TRUE_RADIUS] * 2, rel=5e-4)
+    assert any("wheel 3: how far it turns is left out" in each for each in found["words"])
+    assert any("hinge first, hinge second, hinge third: left out" in each for each in found["words"])

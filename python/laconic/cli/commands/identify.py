@@ -23,8 +23,9 @@ LEFT_OUT = ("session", "run")
 @click.option("--map-out", type=OutputFile(".toml", stdout=False), metavar="FITTED_MAP.toml",
               help="Write the map with what was found of it: steering, lags, place of the tracker. Needs --map.")
 @click.option("--free", metavar="NAMES",
-              help="Parameters that may change [default: radius,distance; with steered wheels radius,wheelbase,"
-              "steering-gain,steering-offset]. Geometry: radius (of each wheel), distance (of all wheels, one factor), "
+              help="Parameters that may change [default: radius,distance, also with casters or trailers; with "
+              "steered wheels radius,wheelbase,steering-gain,steering-offset]. Geometry: radius (of each wheel), "
+              "distance (of all wheels, one factor), "
               "centre-of-mass, place and heading (of the robot against the recorded pose), clock-lag (of the pose), "
               "axle, roller (angles of each wheel), common-radius (one of all wheels). Steered: wheelbase, track, "
               "trail, steering-gain, steering-offset, steering-curve, steering-lag, steering-rate, speed-gain, "
@@ -66,6 +67,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     from laconic.robot.identify.words_of_errors import failures
     from laconic.robot.logs import gather_logs
     from laconic.robot.logs.column_map import named_map
+    from laconic.robot.replay.missed_wraps import rolled_alone
     from laconic.scene import read_scene
 
     if map_out is not None and map_path is None:
@@ -73,10 +75,13 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     if not 0.0 < prior_percent <= 100.0:
         raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
     given = read_scene(scene)
-    names = names_in(free) if free is not None else steered.USUAL if given.has_hinges else geometry.USUAL
-    parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []
+    names = names_in(free) if free is not None else ()
+    if all(name in geometry.ROLLED for name in names):
+        given, [runs, others] = rolled_alone(given, runs, others)
+    names = names or geometry.usual(given)
+    parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
     left_out = len(parts(runs, leave_out)) if leave_out else 0
     both = given.has_hinges and any(name in steered.SLIPPING for name in names)  # without slip, too
     with progress_bar("identifying", 1 + left_out * (1 + both)) as advance:

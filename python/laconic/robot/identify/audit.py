@@ -23,7 +23,7 @@ from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
 from laconic.robot.logs.poses import at_times
 from laconic.robot.replay.measures import path_errors, path_length
-from laconic.robot.replay.missed_wraps import fitting
+from laconic.robot.replay.missed_wraps import fitting, rolled_alone
 from laconic.robot.replay.rolling import rolling_of
 from laconic.scene import Scene
 from laconic.scene.ground import slips
@@ -112,6 +112,7 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     if slips(scene.vehicle):
         raise BadInput(f"{scene.path}: has a [ground] with friction; give the scene without it, as an audit compares "
                        "with rolling and names slip as what is left")
+    scene, [logs] = rolled_alone(scene, logs)
     runs = fitting(scene, logs)
     for run in runs:
         run.needs("pose", "an audit")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import Any
 
+from laconic.core.articulated import CARRIAGE
 from laconic.robot.identify.ground import OF_TREES
 from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
@@ -12,15 +14,23 @@ from laconic.robot.identify.study import Study, fitted_scene, parts
 from laconic.scene.scene_text import Comments, lines_of
 from laconic.scene.table import read_toml
 
+HUNG_AT = {"caster": ("x_m", "y_m"), "trailer": ("hitch_x_m", "hitch_y_m"), "body": ("hinge_x_m", "hinge_y_m")}
+"""The keys of each table that say where on the carriage it hangs."""
+
 
 def fitted_text(study: Study) -> str:
     """A complete scene."""
     data = read_toml(study.scene.path).plain()
     data["source"] = f"{data.get('source', '')}; identified".removeprefix("; ")
     comments: Comments = {}
-    for index, wheel in enumerate(data["vehicle"]["wheel"]):
-        _rewrite(study, index, wheel, comments)
+    rows = list(enumerate(data["vehicle"]["wheel"]))
+    if not study.scene.has_hinges:  # those of free bodies were left out
+        rows = [(row, wheel) for row, wheel in rows if wheel.get("body", CARRIAGE) == CARRIAGE]
+    for index, (row, wheel) in enumerate(rows):
+        _rewrite(study, index, wheel, comments, row)
     _rewrite_vehicle(study, data, comments)
+    if not study.scene.has_hinges:
+        _move_hung(study, data["vehicle"], comments)
     if study.scene.has_hinges:
         _rewrite_hinges(study, data["vehicle"], comments)
     head = [f"# {study.scene.path.name}, with parameters identified by `laconic identify` from recorded runs:"]
@@ -116,10 +126,26 @@ def _rewrite_places(study: Study, data: dict[str, Any], after: dict[str, Any], c
             comments["vehicle", "support", str(index), "x_m"] = why
 
 
-def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments) -> None:
-    """The keys of one wheel that parameters have moved; the others stay as they were written."""
+def _move_hung(study: Study, data: dict[str, Any], comments: Comments) -> None:
+    """Where casters and trailers hang on a carriage that has another place in its frame."""
+    values = {p.path: float(value) for p, value in zip(study.found.parameters.each, study.found.values, strict=True)
+              if p.group in ("place", "heading")}
+    if not values:
+        return
+    turn = cmath.exp(1j * values.get("vehicle.*.heading", 0.0))
+    shift = complex(*(values.get(f"vehicle.*.{key}", 0.0) for key in ("x_m", "y_m")))
+    for table, keys in HUNG_AT.items():
+        for index, part in enumerate(data.get(table, ())):
+            if part.get("parent", CARRIAGE) == CARRIAGE:
+                place = turn * (complex(*(part.get(key, 0.0) for key in keys)) + shift)
+                part.update(zip(keys, (place.real, place.imag), strict=True))
+                comments["vehicle", table, str(index), keys[0]] = "moved with the robot"
+
+
+def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments, row: int) -> None:
+    """The keys of one wheel that parameters have moved; the others stay as they were written. `row`: in the file."""
     before, after = (scene.vehicle["wheel"][index] for scene in (study.scene, fitted_scene(study.scene, study.found)))
-    location = ("vehicle", "wheel", str(index))
+    location = ("vehicle", "wheel", str(row))
     if after.get("radius_m") != before.get("radius_m"):
         wheel["radius_m"] = after["radius_m"]
         comments[(*location, "radius_m")] = _interval(study, f"vehicle.wheel[{index + 1}].radius_m")

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from laconic.errors import BadInput, nearest_of, shown
 from laconic.robot.identify import ground, motion, steered
 from laconic.robot.identify.parameter import Parameter, Parameters, Vehicle
+from laconic.robot.logs.for_vehicle import is_free
 from laconic.robot.replay.rolling import wheel_radii
 from laconic.scene import Scene
 
@@ -17,7 +18,15 @@ ANGLE_SD_RAD = math.radians(2.0)
 GROUPS = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller",
           *ground.GROUPS, *motion.GROUPS)
 LEAST_SHARE = 0.05                    # of a nominal radius or distance: below it no wheel can be
-USUAL = ("radius", "distance")
+ROLLED = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller", "clock-lag")
+"""What paths by rolling tell of a carriage, with or without casters and trailers behind it."""
+
+
+def usual(scene: Scene) -> tuple[str, ...]:
+    """What is free by default, by what drives and steers the vehicle."""
+    if not scene.has_hinges:
+        return ("radius", "distance")
+    return ("radius", "track") if is_free(scene) else ("radius", "wheelbase", "steering-gain", "steering-offset")
 
 
 def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE_SD) -> Parameters:

@@ -24,7 +24,6 @@ USUAL_RATE_RAD_PER_S, USUAL_REACH_RAD = 5.0, 0.5
 CREEP_SD = 0.1
 SCRUB_SD_M, FADE_M = 0.01, 0.1
 LEAST_SHARE = 0.05
-USUAL = ("radius", "wheelbase", "steering-gain", "steering-offset")
 
 
 def _log(vehicle: Vehicle) -> OfLog:

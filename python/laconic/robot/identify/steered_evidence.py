@@ -140,6 +140,8 @@ def motions(scene: Scene, vehicle: Vehicle, runs: Sequence[Log]) -> dict[str, Lo
     """Runs of the kind that was recorded which another recording could be, by their names."""
     log = max(runs, key=lambda each: len(each.time_s))
     steering = log.needs("steering_angle_rad", "identify")
+    if not steering.shape[1]:  # nothing steers, so that no angle says how it turns
+        return {}
     reach = float(np.abs(steering).max(initial=0.0)) or 0.3
     speed = max(float(path_length(each.time_s, each.pose) / each.time_s[-1]) for each in runs if each.pose is not None)
     time = PERIOD_S * np.arange(SAMPLES + 1)

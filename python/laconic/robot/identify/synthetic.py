@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from laconic.core import Core
-from laconic.robot.identify.geometry import USUAL, geometry_of
+from laconic.robot.identify.geometry import geometry_of, usual
 from laconic.robot.identify.parameter import Parameters, Vehicle
 from laconic.robot.identify.rolling_evidence import RollingEvidence
 from laconic.robot.identify.solve import Fit, fit
@@ -55,7 +55,7 @@ def trials(count: int, seed: int, robots: Sequence[str] = ROBOTS, runs: int = RU
 
 def trial(scene: Scene, name: str, random: np.random.Generator, runs: int = RUNS) -> Trial:
     """One robot, its runs, and what is found from them."""
-    core, parameters = scene.core(), geometry_of(scene, USUAL)
+    core, parameters = scene.core(), geometry_of(scene, usual(scene))
     truth = parameters.values(TRUTH_SHARE * random.standard_normal(len(parameters)))
     vehicle = parameters.vehicle(scene.vehicle, truth)
     logs = [made_up(core, vehicle, Path(f"/made-up/{number}/run.csv"), random) for number in range(runs)]

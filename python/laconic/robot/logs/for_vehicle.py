@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput
 from laconic.robot.logs.log import MEMBERS, Log, wheels_of
+from laconic.scene import Scene
+from laconic.scene.ground import slips
 
 SIDES = {"left": 1.0, "right": -1.0}
 ENDS = {"front": 1.0, "rear": -1.0, "back": -1.0}
@@ -19,6 +22,7 @@ SHORT = {"fl": ("front", "left"), "fr": ("front", "right"), "rl": ("rear", "left
          "lr": ("rear", "left"), "lb": ("rear", "left"), "rb": ("rear", "right"), "l": ("", "left"), "r": ("", "right"),
          "lhs": ("", "left"), "rhs": ("", "right")}
 NEAR_M = 1e-6
+FREE = "free"     # hinges of casters and trailers
 
 
 def words_of(name: str) -> list[str]:
@@ -137,3 +141,104 @@ def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
     log = _reordered(log, lambda values: spread(values, places, len(wheels)))
     return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True,
                    remarks=(*log.remarks, f"by their names {words}"))
+
+
+def is_free(scene: Scene) -> bool:
+    """Whether all of its hinges are free: casters and trailers behind a carriage without steered wheels."""
+    return scene.has_hinges and all(hinge.kind == FREE for hinge in scene.hinges)
+
+
+def asks_free(scene: Scene, logs: Sequence[Log]) -> bool:
+    """Whether a map names free hinges of the scene, so that their angles count; or angles, and not of which."""
+    free = {hinge.name for hinge in scene.hinges if hinge.kind == FREE}
+    return any(log.asks_hinges and log.steering_angle_rad is not None and (not log.hinge_names or free & {
+        *log.hinge_names}) for log in logs)
+
+
+def carriage_of(scene: Scene, logs: Sequence[Log]) -> Scene:
+    """The carriage alone, which rolls like a vehicle without hinges, where casters and trailers are all that hangs on
+    it; the scene itself where wheels steer or slip, or a map asks for angles of free hinges."""
+    if not is_free(scene) or slips(scene.vehicle) or asks_free(scene, logs):
+        return scene
+    vehicle = {key: value for key, value in scene.vehicle.items() if key != "body"} | {
+        "wheel": [scene.vehicle["wheel"][index] for index in wheels_on_carriage(scene.vehicle)]}
+    return replace(scene, vehicle=vehicle, hinges=(), wheel_places=())
+
+
+def wheels_on_carriage(vehicle: Mapping[str, Any]) -> list[int]:
+    """Their indices."""
+    return [index for index, wheel in enumerate(vehicle["wheel"]) if wheel.get("body", CARRIAGE) == CARRIAGE]
+
+
+def for_carriage(log: Log, scene: Scene) -> Log:
+    """The log for the carriage of a scene, with a remark on what of it casters and trailers measured."""
+    kept = wheels_on_carriage(scene.vehicle)
+    if wheels_of(log) <= len(kept):
+        found, others = for_wheels(log, [scene.vehicle["wheel"][index] for index in kept],
+                                   scene.vehicle.get("wheel_radius_m")), list[int]()
+    else:
+        full = for_vehicle(log, scene.vehicle)
+        others = [index for index in range(len(scene.vehicle["wheel"])) if index not in kept]
+        joints = tuple(full.column_names[index] for index in kept) if full.column_names else ()
+        found = replace(_reordered(full, lambda values: values[:, kept]), column_names=joints, is_ordered=True)
+    names = [f"hinge {name}" for name in log.hinge_names] or ["angles of steering"]
+    return _told(replace(found, steering_angle_rad=None, hinge_names=()),
+                 _numbered(others) + (names if log.steering_angle_rad is not None else []))
+
+
+def without_free(log: Log, scene: Scene) -> Log:
+    """The log without angles of free hinges that no map asks for: what nobody drives measures no odometry."""
+    free = {hinge.name for hinge in scene.hinges if hinge.kind == FREE}
+    angles = log.steering_angle_rad
+    if angles is None and is_free(scene):  # nothing steers, so that no angle is missing
+        return replace(log, steering_angle_rad=np.zeros((len(log.time_s), 0)))
+    if angles is None or log.asks_hinges or not free & {*log.hinge_names}:
+        return log
+    kept = [index for index, name in enumerate(log.hinge_names) if name not in free]
+    names = tuple(log.hinge_names[index] for index in kept)
+    found = replace(log, hinge_names=names, steering_angle_rad=angles[:, kept] if kept or is_free(scene) else None)
+    return _told(found, _numbered(wheels_behind(scene, free)) + [
+        f"hinge {name}" for name in log.hinge_names if name in free])
+
+
+def driven_alone(log: Log, scene: Scene) -> Log:
+    """The log without turning of wheels that roll along, where driven ones tell the way: a fit frees the radii of those
+    alone."""
+    is_driven = np.array([wheel.get("driven", True) for wheel in scene.vehicle["wheel"]])
+    values = log.wheel_angle_rad if log.wheel_angle_rad is not None else log.wheel_speed_rad_per_s
+    if values is None or values.shape[1] != len(is_driven):
+        return log
+    measured = ~np.isnan(values).any(axis=0)
+    others = measured & ~is_driven
+    others[wheels_behind(scene, {each.name for each in scene.hinges if each.kind == FREE} - {*log.hinge_names})] = False
+    if not others.any() or not (measured & is_driven).any():
+        return log
+    found = _reordered(log, lambda of_wheels: np.where(others, np.nan, of_wheels))
+    names = ", ".join(f"wheel {index + 1}" for index in np.flatnonzero(others))
+    return replace(found, remarks=(*log.remarks, f"{names}: how far it turns is left out, as it is not driven"
+                                   if others.sum() == 1 else
+                                   f"{names}: how far they turn is left out, as they are not driven"))
+
+
+def wheels_behind(scene: Scene, names: Container[str]) -> list[int]:
+    """Indices of wheels behind hinges of some names, with other hinges between or without."""
+    parents = {hinge.name: body["parent"] for hinge, body in zip(scene.hinges, scene.vehicle["body"], strict=True)}
+    found = []
+    for index, wheel in enumerate(scene.vehicle["wheel"]):
+        name = wheel.get("body", CARRIAGE)
+        while name != CARRIAGE and name not in names:
+            name = parents[name]
+        found += [index] if name != CARRIAGE else []
+    return found
+
+
+def _numbered(wheels: Sequence[int]) -> list[str]:
+    return [f"wheel {index + 1}" for index in wheels]
+
+
+def _told(log: Log, names: Sequence[str]) -> Log:
+    """With a remark that these were left out."""
+    if not names:
+        return log
+    return replace(log, remarks=(*log.remarks, f"{', '.join(names)}: left out, as nobody drives or steers them; to "
+                                 "take such angles as measured, name hinges under [steering_angle] of a map"))

@@ -59,6 +59,7 @@ class Log:
     yaw_rate_rad_per_s: np.ndarray | None = None  # of a gyro
     steering_angle_rad: np.ndarray | None = None  # of hinges, a column each
     hinge_names: tuple[str, ...] = ()       # of these columns; empty: the scene's steered hinges in their order
+    asks_hinges: bool = False               # the map names them: angles of free hinges count, too
     is_ordered: bool = False                # the map says which wheel of the scene each column is of
     moved: np.ndarray | None = None         # the displacements that the log has instead of a pose, summed: x, y, angle
     names: dict[str, str] = field(default_factory=dict)  # quantity → how the log calls its columns, for messages

@@ -62,7 +62,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     if YAW_RATE in chosen.values:
         found["yaw_rate_rad_per_s"] = chosen.values[YAW_RATE][:, 0]
     if STEERING in chosen.values:
-        found |= {"steering_angle_rad": chosen.values[STEERING], "hinge_names": columns.quantities[STEERING].hinges}
+        found |= {"steering_angle_rad": chosen.values[STEERING], "hinge_names": columns.quantities[STEERING].hinges,
+                  "asks_hinges": not columns.is_guess}
     if COMMANDED in chosen.values:
         found["speed_m_per_s"] = chosen.values[COMMANDED][:, 0]
     found["following"] = _following(columns)

@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.errors import BadInput, Refused
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import for_vehicle
+from laconic.robot.logs.for_vehicle import carriage_of, driven_alone, for_carriage, for_vehicle, without_free
 from laconic.robot.logs.log import POINTS
 from laconic.robot.logs.wraps import REMEDY
 from laconic.robot.replay.rolling import Rolling, rolling_of, rotations_of
@@ -26,10 +26,20 @@ AGREES = 0.05    # of the range: wheels that are right fit each other so well
 CLEARLY = 0.2    # of the range, that wheels must contradict each other by
 
 
+def rolled_alone(scene: Scene, *given: Sequence[Log]) -> tuple[Scene, list[list[Log]]]:
+    """What rolls by the wheels' angles alone: the carriage and its logs where only casters and trailers hang on it, or
+    the scene and the logs as they are."""
+    carriage = carriage_of(scene, [log for logs in given for log in logs])
+    if carriage is scene:
+        return scene, [list(logs) for logs in given]
+    return carriage, [[for_carriage(log, scene) for log in logs] for logs in given]
+
+
 def fitting(scene: Scene, logs: Sequence[Log]) -> list[Log]:
     """The logs for the scene's vehicle; a remark names the first row whose counter missed a part of its range."""
     if scene.has_hinges:
-        return [part for log in logs for part in parts_of(_examined(scene, for_vehicle(log, scene.vehicle)))]
+        return [part for log in logs for part in parts_of(
+            _examined(scene, driven_alone(without_free(for_vehicle(log, scene.vehicle), scene), scene)))]
     return [_examined(scene, for_vehicle(log, scene.vehicle)) for log in logs]
 
 

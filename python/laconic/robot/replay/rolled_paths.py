@@ -14,7 +14,7 @@ from laconic.errors import BadInput
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.measures import RunErrors, grand_mean, session_means
-from laconic.robot.replay.missed_wraps import fitting
+from laconic.robot.replay.missed_wraps import fitting, rolled_alone
 from laconic.robot.replay.poor_fit import words_of_poor
 from laconic.robot.replay.predicted import predict
 from laconic.scene import Scene
@@ -51,6 +51,8 @@ class RolledPaths:
 
 def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs: str = "wheel-speeds") -> RolledPaths:
     """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
+    if inputs == "wheel-speeds":
+        scene, [logs] = rolled_alone(scene, logs)
     runs = fitting(scene, logs)
     if inputs == "wheel-speeds" and all(log.pose is None for log in runs):
         other = next((f", or take --inputs {name}" for name, values in (

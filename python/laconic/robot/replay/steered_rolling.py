@@ -154,9 +154,10 @@ class SteeredRolling:
         coordinated = [hinge.name for hinge in steered if hinge.kind == "coordinated"]
         if width == 1 and coordinated and not log.hinge_names:
             return self._of_middle(values[:, 0], coordinated)
-        raise BadInput(f"{log.path}: has {width} steering angles, the scene {len(names)} steered hinges "
-                       f"({', '.join(names)}); name those of the columns in the map: hinges = [...] in "
-                       "[steering_angle]")
+        listed = f" ({', '.join(names)})" if names else ""
+        raise BadInput(f"{log.path}: has {width} steering angles, the scene {len(names)} steered hinges"
+                       f"{listed}; name those of the columns in the map: hinges = "
+                       f"[...] in [steering_angle], of {', '.join(self._bodies)}")
 
     def _of_middle(self, angle: np.ndarray, names: list[str]) -> dict[str, np.ndarray]:
         """Angles of coordinated wheels where the log has that of a wheel on the middle line in their place."""

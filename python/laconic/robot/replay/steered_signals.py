@@ -79,9 +79,9 @@ def driven(log: Log, own: OfLog, wheels: int, first_rad: float | None = None) ->
     shift_s = own.clock_lag_s if by_commands(log) else 0.0
     grid, row, line = _grid(log.time_s, shift_s) if by_commands(log) else (log.time_s, *2 * (np.arange(len(angle)),))
     held = given[row] if following.is_command or not by_commands(log) else np.column_stack([
-        np.interp(grid - shift_s, log.time_s, column) for column in given.T])
+        np.interp(grid - shift_s, log.time_s, column) for column in given.T]) if given.shape[1] else given[row]
     angles, between = held, 0.5 * (held[1:] + held[:-1])
-    if following.is_command or lag_s > 0.0 or limit < math.inf:
+    if given.shape[1] and (following.is_command or lag_s > 0.0 or limit < math.inf):
         pairs = [followed(grid, column, column[0] if first_rad is None or lag_s == 0.0 else first_rad, lag_s, limit)
                  for column in held.T]
         angles, between = (np.column_stack(each) for each in zip(*pairs, strict=True))
