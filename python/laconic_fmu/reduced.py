@@ -1,7 +1,4 @@
-"""A description without the variables that a vehicle does not need, and with the dependencies that it has.
-
-What only FMUs of vehicles with supports have: the loads of these.
-"""
+"""A description without the variables that a vehicle does not need, and with the dependencies that it has."""
 
 from __future__ import annotations
 
@@ -70,13 +67,3 @@ def _shorten(root: ET.Element, names: set[str], unknowns: tuple[Unknown, ...]) -
         if unknown.kinds is not None:
             attributes["dependenciesKind"] = " ".join(unknown.kinds)
         ET.SubElement(structure, unknown.tag, attributes)
-
-
-COUNT, LOAD = "support_count", "support_load_N"
-
-
-def for_vehicle(description: Description) -> Description:
-    """The description without what its vehicle does not need."""
-    if is_above_0(description, (COUNT,)) or not any(v.name == LOAD for v in description.variables):
-        return description
-    return reduced(description, lambda v: v.name != LOAD)
