@@ -197,7 +197,7 @@ class Scene:
         """The checked vehicle of a scene with hinges on ideal ground."""
         if self.slips_on_hinges:
             raise BadInput(f"{self.path}: ground.friction_coefficient: this does not take hinges on ground with "
-                           "friction yet; use laconic simulate or laconic fmu, or take it out")
+                           "friction yet; use laconic simulate, laconic fmu or laconic rig, or take it out")
         return self._with_room(core, ArticulatedVehicle)
 
     def slipping_vehicle(self, core: Core) -> SlippingVehicle:
@@ -239,7 +239,7 @@ class Scene:
         if refused.status == "overflow" and not refused.field:
             refused = refused.at("vehicle")  # of its numbers together
         if self.has_hinges:
-            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places)
+            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places, self.slips_on_hinges)
         return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
 
     def steps(self) -> int:

@@ -36,6 +36,7 @@ class Identity:
     can_fd: bool
     protocol: int
     hinges: bool = False  # vehicles with hinges
+    slip: bool = False    # also on ground with friction
 
 
 class NodeClient:
@@ -265,7 +266,7 @@ def identity_of(values: dict[str, int]) -> Identity:
     version = ".".join(str(values[f"version_{part}"]) for part in ("major", "minor", "patch"))
     real = {4: "single", 8: "double"}.get(values["scalar_bytes"], f"{values['scalar_bytes']} bytes")
     return Identity(version, real, values["max_wheels"], values["methods"], bool(values["can_fd"]), values["protocol"],
-                    bool(values["hinges"]))
+                    bool(values["hinges"]), bool(values["slip"]))
 
 
 FRAME = "ERROR_ESTIMATE"

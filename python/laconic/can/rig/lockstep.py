@@ -221,17 +221,18 @@ class HingedStream(RawStream):
         self.groups = self.groups or ["take_voltage"]
         self.of_hinges = raw_groups(twin)
         self.columns = np.array([*self._columns(scene.wheel_count), *raw_columns(twin, self.of_hinges)], dtype=int)
-        self.row_length, self.has_sensors, self.sampled = len(twin.raw_row()), False, True
+        self.row_length, self.has_sensors, self.sampled = len(twin.raw_row()), False, not twin.slips
 
     def select(self) -> None:
         """Selects the numbers that go over the bus."""
-        self.node.select(**dict.fromkeys([*self.groups, *self.of_hinges, *RAW_OUTPUTS, "take_sampled"], 1),
+        sampled = ["take_sampled"] if self.sampled else []
+        self.node.select(**dict.fromkeys([*self.groups, *self.of_hinges, *RAW_OUTPUTS, *sampled], 1),
                          raw_fd=int(self.fd))
 
     def exchanges(self, steps: int, every: int) -> Iterator[tuple[int, int, np.ndarray | None]]:
         """One step each, with the rows of its start and end."""
         for at, rows in enumerate(self.twin.steps(steps)):
-            yield at, 1, rows.astype(self.core.dtype)
+            yield at, 1, (rows if self.sampled else rows[1]).astype(self.core.dtype)
 
 
 def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
