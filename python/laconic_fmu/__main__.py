@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from . import archive, fmi2, fmi3
+from .archive import pack
 from .description import identifier_in, parse, token_in, token_of, with_identifier, with_token
 from .estimate import with_estimate, without_estimate
 from .field_list import missing_variable
@@ -15,7 +16,6 @@ from .licences import licence_parts, ziglang_in
 from .method_list import differing_item, methods_in, with_items
 from .names import with_own_names
 from .of_step import of_step
-from .package import pack
 from .slipping import of_slipping, without_slip
 from .tables import tables
 

@@ -9,9 +9,8 @@ from html import escape
 from pathlib import Path
 
 from . import fmi3
-from .archive import Content, read_parts
+from .archive import Content, pack, read_parts, start_file
 from .description import parse, start_values, token_in, with_token, with_values
-from .package import pack, start_file
 
 TX_CLOCKS = ("triggered", "countdown")
 TX_CLOCK = "CAN.Tx_Clock"

@@ -10,7 +10,7 @@ import numpy as np
 from assurance.common import Clock
 from laconic.core.binding import load
 from laconic.tools.verify.exact.trials import by_each, difference, directions, error, tangent, trials
-from references.derivatives.adjoints import adjoint_error
+from references.derivatives.c_table import adjoint_error
 
 LARGEST, TRANSPOSED = 1e-11, 1e-14  # error of a tangent, of an adjoint
 

@@ -1,6 +1,8 @@
 """Steps of every method in 50 digits as a table for the core's C tests, core_c/tests/support/exact_steps.h:
 
     python -m references.derivatives.c_table core_c/tests/support/exact_steps.h
+
+The adjoint of a step beside its Jacobian and its tangents.
 """
 
 from __future__ import annotations
@@ -17,6 +19,8 @@ from mpmath import mp, mpf
 
 from laconic.core import load
 from laconic.core.binding import Core
+from laconic.core.derivatives import StepDerivatives
+from laconic.core.plant import Plant
 from laconic.errors import Refused
 from laconic.scene.methods import EXPLICIT
 from laconic.tools.verify.exact.exact_gauss import panels_of
@@ -139,3 +143,22 @@ def wrapped(words: str) -> list[str]:
 
 if __name__ == "__main__":
     Path(sys.argv[1]).write_text(text(), encoding="utf-8")
+
+
+def adjoint_error(random: np.random.Generator, trial: Trial, plant: Plant) -> float:
+    """The larger of two errors along random directions: of each number of the adjoint beside its column of the
+    Jacobian, and of its product with a direction beside the covector's product with the tangent.
+
+    Both are relative to the sum of magnitudes that such a product adds up, of which its rounding is some units.
+    """
+    step = StepDerivatives(plant, trial.held)
+    gradient, state = random.normal(size=(2, 6 + plant.wheel_count))
+    held = {name: random.normal(size=len(values)).tolist() for name, values in trial.held.items()}
+    direction = np.concatenate([state, *(held[name] for name in INPUTS)])
+    jacobian = step.jacobian(world_force=True)
+    matrix = np.hstack([jacobian.by_state, jacobian.by_input])
+    size = np.abs(matrix).T @ np.abs(gradient)
+    found = np.concatenate(step.adjoint(gradient))
+    columns = np.divide(np.abs(found - matrix.T @ gradient), size, out=np.zeros_like(size), where=size > 0.0)
+    product = abs(found @ direction - gradient @ step.tangent(state, held)) / (size @ np.abs(direction))
+    return max(float(columns.max()), float(product))

@@ -9,8 +9,7 @@ import numpy as np
 
 from references.friction.core_solver import CoreSolution, solve_in_core
 from references.friction.polish import polish
-from references.friction.problem import StepProblem
-from references.friction.residual import residual, size_of
+from references.friction.problem import StepProblem, residual, size_of
 
 LIMIT = 1e-9
 FEW = 4   # wheels: for refusals, vehicles with more are counted apart

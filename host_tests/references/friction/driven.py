@@ -14,8 +14,7 @@ import numpy as np
 from references.friction.agreement import LIMIT, Count, difference
 from references.friction.core_solver import CoreSolution, solve_in_core
 from references.friction.polish import polish
-from references.friction.problem import StepProblem
-from references.friction.residual import residual, size_of
+from references.friction.problem import StepProblem, residual, size_of
 from references.friction.vehicles import GRAVITY, random_vehicle, step_problem
 
 HOLD_STEPS = 25             # a voltage is held so long

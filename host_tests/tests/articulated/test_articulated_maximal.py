@@ -1,7 +1,10 @@
 """Vehicles with hinges against peers: accelerations at random states against maximal coordinates with multipliers,
 kinematics against WPILib's swerve and CommonRoad's car and trailer.
 
-The last two are optional: `pip install robotpy-wpimath commonroad-vehicle-models`."""
+The last two are optional: `pip install robotpy-wpimath commonroad-vehicle-models`.
+
+Articulated vehicles against reference trajectories that were computed to 25 digits.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from articulated_runner import Case, input_words, run, start_words, vehicle_words
+from articulated_runner import Case, input_words, run, start_words, trajectory, vehicle_words
 from hinge_scenes import held, scene_with, two_wheels
 from maximal_coordinates import Maximal, left_of, turned
 from scipy.integrate import solve_ivp
@@ -297,3 +300,49 @@ def test_the_path_and_the_trailer_are_those_that_commonroads_model_integrates(tr
     expected = [run.columns[name][-1] for name in ("origin_x_m", "origin_y_m", "heading_rad", "hinge_angle_rad[cart]")]
     assert x == pytest.approx(expected, abs=1e-6)
     assert max(map(abs, run.columns["heading_rad"])) > 0.15
+
+
+NAMES = [case["name"] for case in CASES]
+
+
+def errors(case: Case, rows: list[list[float]]) -> dict[str, float]:
+    """The largest error of each kind over the states, over the largest number of that kind (at least 1)."""
+    hinges, wheels = len(case["vehicle"]["bodies"]) - 1, len(case["vehicle"]["wheels"])
+    kinds = {"velocity": 3, "pose": 3, "psi": hinges, "hinge_rate": hinges, "wheel_speed": wheels, "chi": wheels}
+    worst, size = dict.fromkeys(kinds, 0.0), dict.fromkeys(kinds, 1.0)
+    assert len(rows) == len(case["states"])
+    for row, state in zip(rows, case["states"], strict=True):
+        at = 1
+        for kind, count in kinds.items():
+            for got, text in zip(row[at:at + count], state[kind], strict=True):
+                worst[kind] = max(worst[kind], abs(got - float(text)))
+                size[kind] = max(size[kind], abs(float(text)))
+            at += count
+    return {kind: worst[kind] / size[kind] for kind in kinds}
+
+
+def assert_errors(case: Case, method: str, step_s: float, limit: float, real: str = "double") -> None:
+    found = errors(case, trajectory(case, method, step_s, real))
+    assert max(found.values()) <= limit, {kind: f"{error:.1e}" for kind, error in found.items()}
+
+
+@pytest.mark.parametrize("case", CASES, ids=NAMES)
+def test_auto_meets_the_reference_at_1_ms(case: Case) -> None:
+    assert_errors(case, "auto", 1e-3, 1e-9)
+
+
+@pytest.mark.parametrize("case", CASES, ids=NAMES)
+def test_auto_meets_the_reference_at_10_ms(case: Case) -> None:
+    assert_errors(case, "auto", 1e-2, 1e-5)
+
+
+@pytest.mark.parametrize("case", CASES, ids=NAMES)
+@pytest.mark.parametrize("method", ["rk4", "circle", "moebius-4"])
+def test_every_method_meets_the_reference(case: Case, method: str) -> None:
+    assert_errors(case, method, 1e-3, 5e-9)
+    assert_errors(case, method, 1e-2, 1e-5)
+
+
+@pytest.mark.parametrize("case", CASES, ids=NAMES)
+def test_single_precision_meets_the_reference(case: Case) -> None:
+    assert_errors(case, "auto", 1e-2, 1e-4, "single")

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from laconic_build.c.facts import Facts
-from laconic_build.release import bill, checksums, readmes
+from laconic_build.release import archives, bill, readmes
 from laconic_build.release.parts import Part, Places, by_name, parts
 from laconic_build.release.products import Product, products
 from laconic_build.release.tree import NoRelease, Tree
@@ -41,7 +41,7 @@ def collect(tree: Tree, facts: Facts, build: Path, dist: Path, places: Places, c
     rows = [*((product.name, product.text) for product in wanted), *of_the_folder(facts)]
     (stage / "README.md").write_text(readmes.of_release(facts, rows), encoding="utf-8")
     write_bill(tree, facts, wanted, known, {**tools(places), **compilers}, stage)
-    checksums.write(stage)
+    archives.write(stage)
     shutil.rmtree(dist, ignore_errors=True)
     dist.parent.mkdir(parents=True, exist_ok=True)
     shutil.move(stage, dist)
@@ -51,7 +51,7 @@ def collect(tree: Tree, facts: Facts, build: Path, dist: Path, places: Places, c
 
 def foreign(dist: Path) -> None:
     """NoRelease for a folder with files that its own SHA256SUMS does not name: they would be lost."""
-    if dist.exists() and (lost := sorted(checksums.sums_of(dist).keys() - checksums.stated(dist).keys())):
+    if dist.exists() and (lost := sorted(archives.sums_of(dist).keys() - archives.stated(dist).keys())):
         raise NoRelease(f"{dist}: holds {lost[0]}, which is of no release; move it away, or name another folder in "
                         "LACONIC_DIST")
 
@@ -85,7 +85,7 @@ def of_the_folder(facts: Facts) -> list[tuple[str, str]]:
     """What the folder tells of itself."""
     return [("licences", "the licence of Laconic, and of each part in these files that others wrote"),
             (bill_name(facts), "bill of materials (CycloneDX): which part is in which file, with checksums"),
-            (checksums.NAME, "`sha256sum -c SHA256SUMS` checks all files")]
+            (archives.NAME, "`sha256sum -c SHA256SUMS` checks all files")]
 
 
 def bill_name(facts: Facts) -> str:
@@ -100,7 +100,7 @@ def write_bill(tree: Tree, facts: Facts, wanted: list[Product], known: Mapping[s
     with zipfile.ZipFile(stage / wheel) as opened:
         (metadata,) = (name for name in opened.namelist() if name.endswith(".dist-info/METADATA"))
         needed = bill.needed_by(opened.read(metadata).decode("utf-8").splitlines())
-    made = bill.bill_of(tree, facts, wanted, checksums.sums_of(stage), known, needed, tools)
+    made = bill.bill_of(tree, facts, wanted, archives.sums_of(stage), known, needed, tools)
     text = bill.written(made)
     if faults := bill.faults_of(text) or ", ".join(bill.unnamed(made, stage)):
         raise NoRelease(f"{bill_name(facts)}: is no valid bill of materials: {faults.splitlines()[0]}")

@@ -6,8 +6,7 @@ import re
 import shutil
 from pathlib import Path
 
-from laconic_build.site.c_reference import c_page
-from laconic_build.site.references import command_page, fmi_page, python_page
+from laconic_build.site.references import c_page, command_page, fmi_page, python_page
 from laconic_build.site.scene_reference import scene_page
 
 PICTURES = (".png", ".svg", ".gif")

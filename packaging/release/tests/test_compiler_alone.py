@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from release_folder import DIST, PRINTED, VERSION, run
 
-from laconic_build.release import checksums
+from laconic_build.release import archives
 
 CORE = f"laconic-core-{VERSION}"
 FETCHED = """\
@@ -62,7 +62,7 @@ def test_the_core_is_installed_and_found_by_its_example(core: Path) -> None:
 @needs_cmake
 def test_fetch_content_takes_the_archive_by_its_checksum(core: Path, tmp_path: Path) -> None:
     archive = DIST / f"{CORE}.tar.gz"
-    lists = FETCHED.format(url=archive.resolve().as_uri(), digest=checksums.stated(DIST)[archive.name])
+    lists = FETCHED.format(url=archive.resolve().as_uri(), digest=archives.stated(DIST)[archive.name])
     (tmp_path / "CMakeLists.txt").write_text(lists, encoding="utf-8")
     shutil.copyfile(core / "example" / "program.c", tmp_path / "program.c")
     run(tmp_path, "cmake", "-S", ".", "-B", "build")

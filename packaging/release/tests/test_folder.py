@@ -18,7 +18,7 @@ from release_folder import DIST, VERSION
 
 from laconic.base.paths import build_dir
 from laconic_build.c.facts import ROOT
-from laconic_build.release import bill, checksums
+from laconic_build.release import archives, bill
 from laconic_build.release.tree import tree_of
 from laconic_build.wheel.contents import FMUS, PLATFORMS
 from laconic_fmu.licences import COMPILER_TEXTS
@@ -43,7 +43,7 @@ def inside(name: str, data: bytes) -> Iterator[tuple[str, bytes]]:
 
 
 def test_its_checksums_are_right_and_complete() -> None:
-    assert checksums.wrong_files(DIST) == []
+    assert archives.wrong_files(DIST) == []
 
 
 def test_its_bill_is_valid_by_the_schema_and_names_every_file() -> None:

@@ -15,8 +15,8 @@ import numpy as np
 
 from laconic.core.copies import NotCopied, OwnMemory
 from laconic.core.given import c_object, step_count
+from laconic.core.inputs import Schedule
 from laconic.core.saved import check_saved
-from laconic.core.schedule import Schedule
 from laconic.errors import BadInput
 
 if TYPE_CHECKING:

@@ -11,9 +11,8 @@ from laconic.core.copies import OwnMemory
 from laconic.core.derivatives import StepDerivatives
 from laconic.core.estimate import USUAL_STEPS, Estimate
 from laconic.core.given import c_object, number, shown, step_count
-from laconic.core.inputs import check_held, sampled_rows
+from laconic.core.inputs import Schedule, check_held, sampled_rows
 from laconic.core.saved import check_motion_of, check_saved, check_wheels_of
-from laconic.core.schedule import Schedule
 from laconic.core.sensors import Sensors, settings_of, shows_unsigned
 from laconic.errors import BadInput
 

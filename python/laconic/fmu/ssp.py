@@ -19,9 +19,8 @@ from laconic.base.paths import SOURCE_DIR, built
 from laconic.errors import BadInput
 from laconic.fmu import DESCRIPTION, content_of, hinges, make_fmu
 from laconic.scene import Scene
-from laconic_fmu.archive import Variant, scene_fmu
+from laconic_fmu.archive import Variant, pack, scene_fmu
 from laconic_fmu.description import Description, read
-from laconic_fmu.package import pack
 
 CONTROLLER = SOURCE_DIR / "fmu" / "controller" / "modelDescription.xml"
 SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"

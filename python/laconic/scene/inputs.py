@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from laconic.core.schedule import FOR_EVER, Schedule
+from laconic.core.inputs import FOR_EVER, Schedule
 from laconic.errors import BadInput
 
 if TYPE_CHECKING:

@@ -3,16 +3,21 @@
 Reading and the scene reference (laconic.scene.reference) take both from here. A key that is a field of the core has
 kind, rule and need there and its words in modelDescription.xml; of it stands here only what a file has otherwise.
 `[#]` is one of several tables.
+
+The one thing that the core does not know of a scene file: which angles it gives in degrees. Tables and keys are the
+core's own (laconic_field_path).
 """
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from laconic.core.fields import ABOVE_0
+from laconic.errors import Refused
 from laconic.scene.table import NO_HINTS, REQUIRED, Table
 
 
@@ -431,3 +436,31 @@ def read_choice(table: Table, name: str, *, hints: Mapping[str, str] = NO_HINTS)
     """One of the words that a key may be, or its default; hints as in laconic.scene.not_modelled."""
     key = key_of(table, name)
     return table.choice(name, tuple(key.choices or ()), key.default, hints=hints)
+
+
+DEGREES = {"pi/2": "90", "pi/4": "45"}
+
+
+def in_file(refused: Refused, in_degrees: Collection[str]) -> Refused:
+    """A refusal of the core by the key, and in the unit, that the file has."""
+    key, _, text = refused.message.partition(": ")
+    if key not in in_degrees:
+        return refused
+    text = in_degrees_of(text, refused)
+    for radians, degrees in DEGREES.items():
+        text = text.replace(radians, degrees)
+    text = f"{key.removesuffix('_rad')}_deg: {text}"
+    return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)
+
+
+def in_degrees_of(text: str, refused: Refused) -> str:
+    """A text whose numbers are the refusal's value and limit, in degrees; the limit rounded so that it is within."""
+    value, limit = (f"{number:.6g}" for number in (refused.value, refused.limit))
+    if text.startswith(f"with {value} rad"):
+        return text.replace(f"{value} rad", f"{math.degrees(refused.value):.6g} degrees", 1)
+    if not text.startswith(f"{value} is"):
+        return text
+    verdict = text.removeprefix(value)
+    if refused.limit:
+        verdict = verdict.replace(limit, f"{math.floor(1e3 * math.degrees(refused.limit)) / 1e3:.6g}")
+    return f"{math.degrees(refused.value):.6g}{verdict}"

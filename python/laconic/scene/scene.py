@@ -24,8 +24,8 @@ from laconic.scene.drives import ArduPilotTable, Drives, SpeedController
 from laconic.scene.ground import slips
 from laconic.scene.hinges import Hinge, check_without_hinges, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
+from laconic.scene.keys import in_file
 from laconic.scene.methods import METHODS
-from laconic.scene.names import in_file
 from laconic.scene.reader import methods_with_hinges, read_parts, read_run
 from laconic.scene.sensors import DELAY_S, NO_SENSORS, SensorTables
 from laconic.scene.step_choice import AUTO, chosen_step_s

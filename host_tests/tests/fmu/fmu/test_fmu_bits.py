@@ -1,16 +1,27 @@
-"""FMUs give the same bits as the core, for every scene, in both FMI versions, with arrays and without."""
+"""FMUs give the same bits as the core, for every scene, in both FMI versions, with arrays and without.
+
+What the calls of an FMU cost beside the core's step, in instructions: the same on every run.
+
+FMUs show the normal loads of wheels and supports, with the bits and the derivatives of the core.
+"""
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from fmu_importer import OK, Importer
 
+import laconic
+from laconic.base.paths import built
 from laconic.core import load
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene, rigid_scene_names
+from laconic.tools.report.counting import cachegrind_present, instructions_of
 
 VARIANTS = {"fmi2": (2, False), "fmi3": (3, False), "fmi3-scalar": (3, True)}
 STEPS, EVERY = 10_000, 100
@@ -20,7 +31,6 @@ QUICK = {"s1", "skid_steer", "kuka_youbot", "paper_caster", "robotino_grey", "ca
 def signal_name(name: str, values: list[float], index: int) -> str:
     """What the core calls one number of an input: with its index where the input has several, or one per wheel."""
     return f"{name}[{index + 1}]" if len(values) > 1 or name.endswith(("_V", "axle_torque_Nm")) else name
-
 
 
 def outputs_of(plant: object, held: object) -> list[float]:
@@ -72,3 +82,65 @@ def test_ten_thousand_steps_give_the_same_bits_as_the_core(scene_name: str, vari
             assert got == outputs_of(plant, held), f"after {(k + 1) * EVERY} steps"
             if not plant.has_friction:
                 assert importer.get("acceleration_body_m_per_s2") == plant.body_acceleration(held).tolist()
+
+
+COUNTED_STEPS = 2000
+MOST = 560  # instructions to set four voltages, take the step, and get ν, position and heading, without the core's step
+
+
+def instructions_a_step(loop: str) -> float:
+    """I(2n) − I(n) over n: loading and start cancel."""
+    program = [str(built(f"fmu/{name}")) for name in (
+        "laconic_fmu_overhead", "Laconic/fmi2/Laconic.so", "Laconic/fmi3/Laconic.so", "liblaconic_fmu_minimal.so")]
+    once, twice = (instructions_of([*program, "--count", loop, str(steps)])
+                   for steps in (COUNTED_STEPS, 2 * COUNTED_STEPS))
+    return (twice - once) / COUNTED_STEPS
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
+def test_the_calls_of_a_step_cost_less_than_the_step(capsys: pytest.CaptureFixture[str]):
+    core, least = instructions_a_step("core"), instructions_a_step("minimal")
+    for version in (2, 3):
+        glue = instructions_a_step(f"fmi{version}") - core
+        with capsys.disabled():
+            print(f"\nFMI {version}: {glue:.0f} instructions beyond the core's {core:.0f}; a minimal FMU: {least:.0f}")
+        assert least < glue < MOST
+
+
+STEPS_WITH_LOADS = 20
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("name", ["canopen_agv", "kuka_youbot", "skid_steer"])
+def test_the_loads_have_the_cores_bits(name: str, version: int, tmp_path: Path) -> None:
+    scene = laconic.read_scene(name)
+    step_s, supports = scene.run.step_s, len(scene.vehicle["support"])
+    volts = [2.0 + wheel for wheel in range(scene.wheel_count)]
+    plant = laconic.Vehicle.of(scene).plant(scene.run.method, step_s)
+    with Importer(make_fmu(scene, tmp_path / "robot.fmu", version=version)) as fmu:
+        fmu.initialize()
+        for step in range(STEPS_WITH_LOADS):
+            assert fmu.set("voltage_V", *volts) == OK
+            held = plant.input_of({"voltage_V": volts})
+            if step == 0:
+                assert fmu.get("wheel_load_N") == pytest.approx(plant.wheel_loads(held).tolist(), rel=1e-15)
+            assert fmu.step(step * step_s, step_s) == OK, fmu.log
+            plant.run(held)
+        assert fmu.get("wheel_load_N") == plant.wheel_loads(held).tolist()
+        if supports:
+            assert fmu.get("support_load_N")[:supports] == plant.support_loads(held).tolist()
+            assert not any(fmu.get("support_load_N")[supports:])
+
+
+def names_of(fmu: Path) -> set[str]:
+    with zipfile.ZipFile(fmu) as archive:
+        variables = ElementTree.fromstring(archive.read("modelDescription.xml")).find("ModelVariables")
+    return {str(each.get("name")) for each in variables or ()}
+
+
+def test_a_robot_without_supports_has_no_loads_of_them(tmp_path: Path) -> None:
+    found: dict[str, Any] = {name: names_of(make_fmu(laconic.read_scene(name), tmp_path / f"{name}.fmu", version=3))
+                             for name in ("canopen_agv", "kuka_youbot")}
+    assert "support_load_N" in found["canopen_agv"] and "support_load_N" not in found["kuka_youbot"]
+    assert all("wheel_load_N" in each for each in found.values())

@@ -22,7 +22,7 @@ from laconic.scene import read_scene
 from laconic.scene.methods import EXACT, STIFF_8
 from laconic.tools.enclosure.readings import reading_of_file
 from laconic.tools.enclosure.study import enclose
-from moving_carriage import MOVING_CARRIAGE
+from scene_text import MOVING_CARRIAGE
 
 H = 0.02
 VARIANTS = [(2, False), (3, False), (3, True)]

@@ -22,7 +22,7 @@ from laconic.core.sensors import Sensors
 from laconic.fmu import make_fmu
 from laconic.scene import Scene, read_scene
 from laconic_fmu.archive import read_parts
-from sensor_scenes import BODY, ENCODERS, IMU, RUN, WHEELS, sensed_scene
+from scene_text import BODY, ENCODERS, IMU, RUN, WHEELS, sensed_scene
 
 VERSIONS = pytest.mark.parametrize("version", [2, 3])
 SENSED = ("acceleration_body_m_per_s2", "imu_acceleration_m_per_s2", "imu_yaw_rate_rad_per_s", "encoder_count")

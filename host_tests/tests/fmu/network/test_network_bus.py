@@ -1,8 +1,15 @@
-"""The CAN controller of a network FMU and the bus between two: bit rate, arbitration, errors, notifications."""
+"""The CAN controller of a network FMU and the bus between two: bit rate, arbitration, errors, notifications.
+
+The demo of docs/fmu-importers.md: vehicle, bus and controller in the FMU toolbox's container, and joined by FMPy.
+
+What network FMUs refuse with a line in the log: times that no node counts, and identifiers that drives have.
+"""
 
 from __future__ import annotations
 
+import json
 import random
+import re
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -25,9 +32,13 @@ from bus_operations import (
     operation,
     operations,
 )
+from fmpy import simulate_fmu
+from fmpy.fmi1 import FMICallException
+from fmu_manipulation_toolbox.assembly import Assembly
 
-from laconic.base.paths import built
-from laconic.fmu.bus_importer import Network
+from laconic.base.paths import SOURCE_DIR, built
+from laconic.fmu.bus_demo import SETPOINT_RAD_PER_S, demo, main
+from laconic.fmu.bus_importer import Network, NetworkFmu
 from laconic.fmu.network import make_network_fmu
 from laconic.scene import read_scene
 
@@ -222,3 +233,90 @@ def test_random_operations_change_no_more_than_their_counters(vehicle: Path) -> 
             assert {code for code, _ in sent["Node1"]} <= {TRANSMIT, 0x11, CONFIRM, LOST, ERROR, 1}
         assert node.fmu.get("node_state") == 6
         assert node.fmu.get("wrong_operations") > 200
+
+
+PAGE = (SOURCE_DIR / "docs" / "fmu-importers.md").read_text(encoding="utf-8")
+UNTIL_S = 0.2
+
+
+def test_the_toolboxs_container_and_fmpy_move_the_vehicle_by_the_same_bits(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    by_fmpy = demo(tmp_path, UNTIL_S)
+    assembly = Assembly("demo.json", fmu_directory=tmp_path)
+    assembly.make_fmu(fmi_version=3)
+    speeds = {f"setpoint_rad_per_s[{wheel}]": SETPOINT_RAD_PER_S for wheel in (1, 2, 3, 4)}
+    rows = simulate_fmu("demo.fmu", stop_time=UNTIL_S, step_size=0.001, output_interval=0.001, start_values=speeds,
+                        relative_tolerance=1e-9, validate=False)
+    in_container = {name: float(rows[-1][name]) for name in by_fmpy if name in rows.dtype.names}
+    assert in_container == by_fmpy
+    assert by_fmpy["x_m"] > 0.01
+
+
+def test_the_demo_prints_the_figures_of_the_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert printed.strip() in PAGE
+    assert set(json.loads((tmp_path / "demo.json").read_text())["fmu"]) == {
+        "bus.fmu", "vehicle.fmu", "controller.fmu"}
+    assert re.search(r"x_m +0\.\d+", printed)
+
+
+@pytest.fixture(scope="module")
+def chassis(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A vehicle with four RoboMaster drives."""
+    return make_network_fmu(read_scene("robomaster_mecanum"), tmp_path_factory.mktemp("fmu") / "x.fmu",
+                            drives="robomaster")
+
+
+@pytest.fixture(params=["vehicle", "CanBus", "CanController"])
+def fmu(request: pytest.FixtureRequest, chassis: Path) -> Iterator[NetworkFmu]:
+    """Each kind of network FMU, instantiated."""
+    path = chassis if request.param == "vehicle" else built(f"fmu/Laconic{request.param}_fmi3.fmu")
+    opened = NetworkFmu(path)
+    try:
+        yield opened
+    finally:
+        opened.close()
+
+
+def start(fmu: NetworkFmu, time_s: float = 0.0) -> None:
+    """Through initialization and the first event into step mode."""
+    fmu.slave.enterInitializationMode(startTime=time_s)
+    fmu.slave.exitInitializationMode()
+    while fmu.slave.updateDiscreteStates()[0]:
+        pass
+    fmu.slave.enterStepMode()
+
+
+@pytest.mark.parametrize("time_s", [1e300, -1e300, 1e12])
+def test_a_start_time_at_which_no_microsecond_is_told_is_refused_by_a_line(fmu: NetworkFmu, time_s: float) -> None:
+    with pytest.raises(FMICallException):
+        start(fmu, time_s)
+    line, = fmu.log
+    assert "the start time" in line and "give one from -4e+09 s to 4e+09 s" in line
+
+
+@pytest.mark.parametrize("step_s", [1e300, 1e20, 1e10])
+def test_a_step_of_centuries_is_refused_by_a_line_and_moves_nothing(fmu: NetworkFmu, step_s: float) -> None:
+    start(fmu)
+    fmu.slave.doStep(0.0, 0.001)
+    with pytest.raises(FMICallException):
+        fmu.slave.doStep(0.001, step_s)
+    assert "give 1e+06 s or less" in fmu.log[-1]
+    assert fmu.get("time") == 0.001
+
+
+def test_identifiers_of_drives_are_refused_as_the_nodes_own(chassis: Path) -> None:
+    for base, is_free in ((480, False), (512, False), (544, True)):  # commands 0x1FF, 0x200; feedback to 0x204
+        fmu = NetworkFmu(chassis)
+        try:
+            fmu.set("id_base", base)
+            if is_free:
+                start(fmu)
+                continue
+            with pytest.raises(FMICallException):
+                start(fmu)
+            assert f"id_base: the drives use identifiers from {base} to {base + 31}" in fmu.log[-1]
+        finally:
+            fmu.close()

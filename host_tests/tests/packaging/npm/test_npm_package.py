@@ -127,7 +127,7 @@ SCENES = ("robotino2", "kuka_youbot", "skid_steer", "example_two_wheel_sizes", "
 @needs_npm_package
 @needs_node
 def test_scenes_have_the_bits_of_the_native_core(tmp_path):
-    from laconic_build.page.scenes import plain_scene
+    from laconic_build.page.page import plain_scene
     runs, expected = [], []
     for name in SCENES:
         scene = read_scene(name)

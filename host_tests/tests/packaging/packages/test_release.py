@@ -16,7 +16,7 @@ import pytest
 from laconic.base.paths import SOURCE_DIR
 from laconic_build.c.embedded import TOOLS
 from laconic_build.c.facts import Facts, facts, placeholders
-from laconic_build.release import archives, bill, checksums
+from laconic_build.release import archives, bill
 from laconic_build.release.archives import File
 from laconic_build.release.collect import collect
 from laconic_build.release.parts import Places
@@ -54,14 +54,14 @@ def test_archives_hold_what_was_given_and_programs_stay_programs() -> None:
 def test_checksums_tell_a_file_that_is_wrong_missing_or_not_named(tmp_path: Path) -> None:
     for name in ("a", "b", "c"):
         (tmp_path / name).write_text(name)
-    checksums.write(tmp_path)
+    archives.write(tmp_path)
     if shutil.which("sha256sum"):
         subprocess.run(["sha256sum", "--quiet", "-c", "SHA256SUMS"], cwd=tmp_path, check=True)
-    assert checksums.wrong_files(tmp_path) == []
+    assert archives.wrong_files(tmp_path) == []
     (tmp_path / "a").write_text("other")
     (tmp_path / "b").unlink()
     (tmp_path / "d").write_text("new")
-    assert checksums.wrong_files(tmp_path) == ["a", "b", "d"]
+    assert archives.wrong_files(tmp_path) == ["a", "b", "d"]
 
 
 def test_facts_that_stand_for_others_are_named() -> None:
@@ -137,7 +137,7 @@ def test_a_release_made_twice_has_the_same_bytes(released: Path, tree: Tree, bui
     made = collect(tree, facts(), build, released, places, {"clang": "clang 1"})
     assert {path.name: path.read_bytes() for path in released.rglob("*") if path.is_file()} == first
     assert (made.count, made.size) == (len(first), sum(map(len, first.values())))
-    assert checksums.wrong_files(released) == []
+    assert archives.wrong_files(released) == []
 
 
 def test_every_file_of_a_release_is_in_its_bill_with_checksum_and_licence(released: Path) -> None:
@@ -145,7 +145,7 @@ def test_every_file_of_a_release_is_in_its_bill_with_checksum_and_licence(releas
     told = json.loads(path.read_text(encoding="utf-8"))
     entries = {each["bom-ref"]: each for each in told["components"]}
     assert bill.unnamed(told, released) == []
-    for name, digest in checksums.sums_of(released).items():
+    for name, digest in archives.sums_of(released).items():
         if name != path.name:
             assert entries[name]["hashes"] == [{"alg": "SHA-256", "content": digest}]
             assert name.startswith("licences/") or entries[name]["licenses"] == [{"license": {"id": "MIT"}}]
@@ -187,7 +187,7 @@ def test_what_was_not_built_is_named_and_the_former_release_stays(released: Path
     (build / "page" / "laconic.html").unlink()
     with pytest.raises(NoRelease, match=r"laconic\.html: .* was not built; build the target laconic_release"):
         collect(tree, facts(), build, released, places, {})
-    assert checksums.wrong_files(released) == []
+    assert archives.wrong_files(released) == []
 
 
 def test_all_that_was_not_built_is_named_at_once(released: Path, tree: Tree, build: Path, places: Places) -> None:
@@ -197,7 +197,7 @@ def test_all_that_was_not_built_is_named_at_once(released: Path, tree: Tree, bui
         collect(tree, facts(), build, released, places, {})
     assert "laconic.html: " in str(why.value) and f"{FMUS[0]}: " in str(why.value)
     assert str(why.value).endswith(" were not built; build the target laconic_release")
-    assert checksums.wrong_files(released) == []
+    assert archives.wrong_files(released) == []
 
 
 def test_all_tools_that_a_release_lacks_are_named_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

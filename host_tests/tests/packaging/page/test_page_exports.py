@@ -23,8 +23,7 @@ from laconic_build.page import page
 from laconic_build.page.browser import BROWSER, DRIVER, Browser
 from laconic_build.page.bundle import BadBundle, bundle, without_types
 from laconic_build.page.figures import figures_of, page_figures, text_of
-from laconic_build.page.page import TooLarge, make_page
-from laconic_build.page.scenes import scenes_in
+from laconic_build.page.page import TooLarge, make_page, scenes_in
 
 
 def pose(page: Browser) -> list[float]:

@@ -19,7 +19,7 @@ from laconic.batch.population import Kinds, copies_of
 from laconic.can.play.vehicle import moved_inertia
 from laconic.can.rig.sensed import sensor_parameters
 from laconic.core import copies
-from laconic.core.schedule import Schedule
+from laconic.core.inputs import Schedule
 from laconic.ros2.base import loop_of
 from laconic.scene import Scene
 from laconic.scene.base import BaseTable

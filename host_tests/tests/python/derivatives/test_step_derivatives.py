@@ -27,8 +27,7 @@ from laconic.tools.verify.exact.trials import (
     tangent,
     trials,
 )
-from references.derivatives.adjoints import adjoint_error
-from references.derivatives.c_table import cases, found_numbers, given_numbers
+from references.derivatives.c_table import adjoint_error, cases, found_numbers, given_numbers
 
 TRIALS = len(KINDS) * len(METHODS)
 TOLERANCE = 1e-11

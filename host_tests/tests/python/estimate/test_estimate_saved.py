@@ -23,7 +23,7 @@ from laconic.tools.enclosure.readings import reading_of_file
 from laconic.tools.enclosure.study import enclose, state_signals
 from laconic.tools.report.accuracy import state_row
 from laconic.tools.verify.reference import reference_states
-from moving_carriage import MOVING_CARRIAGE
+from scene_text import MOVING_CARRIAGE
 
 
 def estimate_of(robot: str = "robotino2", method: str = "auto", step_s: float = 0.01, window: int = 16):

@@ -9,7 +9,7 @@ import pytest
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.simulation import simulate, usual_signals
-from sensor_scenes import BODY, ENCODERS, IMU, RUN, STEPS, WHEELS, sensed_scene
+from scene_text import BODY, ENCODERS, IMU, RUN, STEPS, WHEELS, sensed_scene
 
 GOOD = BODY + WHEELS + STEPS + IMU + ENCODERS
 PUCK = "[vehicle]\nmass_kg = 2.0\nyaw_inertia_kgm2 = 0.1\nwheel_radius_m = 0.5\n"

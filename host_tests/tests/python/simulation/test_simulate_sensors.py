@@ -15,7 +15,7 @@ from laconic.scene import Scene
 from laconic.scene.methods import EXPLICIT_8
 from laconic.simulation import simulate
 from laconic.tools.verify.reference import reference_states
-from sensor_scenes import BODY, ENCODERS, ERRORS, IMU, PLACE, RUN, SINES, STEPS, WHEELS, sensed_scene
+from scene_text import BODY, ENCODERS, ERRORS, IMU, PLACE, RUN, SINES, STEPS, WHEELS, sensed_scene
 
 AT, TURNED_RAD = np.array([0.15, -0.1]), math.radians(30)  # as PLACE
 COM = np.array([0.04, 0.03])

@@ -13,7 +13,7 @@ import pytest
 
 from laconic.scene import read_scene
 from laconic.scene.methods import EXACT, EXPLICIT, STIFF_8
-from laconic.tools.report import accuracy, drift, single, stability
+from laconic.tools.report import accuracy, drift, stability
 from laconic.tools.report.collect import PARTS, Report
 from laconic.tools.report.page import shown
 from laconic.tools.report.peers import rates_of_peer
@@ -47,16 +47,16 @@ def test_the_error_on_s1_falls_at_the_methods_order(ladder: list[dict], method: 
 
 
 def test_single_precision_keeps_s1_within_three_units_of_its_last_place():
-    for row in single.s1_rows(read_scene("s1"), ("auto", EXPLICIT)):
+    for row in accuracy.s1_rows(read_scene("s1"), ("auto", EXPLICIT)):
         assert row["error_anywhere"] < 3 * np.finfo(np.float32).eps * row["largest_nu"]
 
 
 def test_a_heading_of_a_billion_turns_advances_by_the_same_bits():
-    assert single.heading_after_many_turns(read_scene("s1"))
+    assert accuracy.heading_after_many_turns(read_scene("s1"))
 
 
 def test_x_keeps_its_digits_over_ten_million_steps_in_single_precision():
-    assert single.straight_run(read_scene("s1"))["error"] < 1e-6
+    assert accuracy.straight_run(read_scene("s1"))["error"] < 1e-6
 
 
 @pytest.mark.parametrize(("real", "limit"), [("double", 1e-13), ("single", 1e-4)])

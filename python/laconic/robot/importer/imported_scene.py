@@ -15,12 +15,11 @@ from laconic.errors import BadInput, Refused
 from laconic.robot.importer.answers import Answers
 from laconic.robot.importer.axle_lines import brought_to_meet, straightened
 from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
-from laconic.robot.importer.dropped import drives_elsewhere, dropped_of, idle_of
+from laconic.robot.importer.dropped import doubts_of, drives_elsewhere, dropped_of, idle_of
 from laconic.robot.importer.first_run import Damping, Promise, steadied, unrest_of
 from laconic.robot.importer.formats import read_robot
 from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.hung import on_one_axle
-from laconic.robot.importer.plausible import doubts_of
 from laconic.robot.importer.push import (
     ACCELERATION_M_PER_S2,
     PUSH_S,

@@ -49,8 +49,7 @@ from laconic.robot.importer.robot_tree import (
     check_count,
     mimics,
 )
-from laconic.robot.importer.sdf_nested import OLD_AXES, flatten, take_includes
-from laconic.robot.importer.sdf_tree import tree_of
+from laconic.robot.importer.sdf_nested import OLD_AXES, flatten, take_includes, tree_of
 from laconic.robot.importer.surfaces import surface_of
 from laconic.robot.importer.xml_file import Element, bytes_of, refuse_doubled, root_of, what_is_doubled
 

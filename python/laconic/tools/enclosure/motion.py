@@ -32,9 +32,8 @@ from laconic.tools.enclosure.balls import (
 from laconic.tools.enclosure.defect import Defects, Growth, Step, defects_of, growth_of
 from laconic.tools.enclosure.equation import Equation, Forcing, Stretch, forcing_of
 from laconic.tools.enclosure.flow import Frame, carried, flow_of
-from laconic.tools.enclosure.radii import Radii, radii_of
 from laconic.tools.enclosure.series import Rates, Series, Start, serves, slow_motion, step_for, taylor
-from laconic.tools.enclosure.state import Beginning, Sample, State, Taken
+from laconic.tools.enclosure.state import Beginning, Radii, Sample, State, Taken, radii_of
 
 FADED = 0.75       # of the precision's bits, in powers of e, after which a damped part counts as died away
 PAUSE_STEPS = 6    # between two tries of the slow motion

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from laconic.tools.measures import authority, ground, stability
+from laconic.tools.measures import authority, stability
 from laconic.tools.measures.arguments import REQUIRED, ArguedMeasure
 from laconic.tools.measures.prepared import Group
 
@@ -48,9 +48,9 @@ MEASURES_OF_MODELS = (
     ArguedMeasure("steady_growth_per_s", "The same of the steady motion, straight or turning, that is most stable "
                   "under the inputs of the run's start", stability.steady_growth_per_s),
     ArguedMeasure("least_load_share", "Least normal load of a wheel or support at rest over the weight; below 0 the "
-                  "vehicle tips", ground.least_load_share),
+                  "vehicle tips", authority.least_load_share),
     ArguedMeasure("grip_margin_N", "Least of friction coefficient times normal load less reaction, as it starts from "
-                  "rest straight in a direction; below 0 a wheel slips", ground.grip_margin_N,
+                  "rest straight in a direction; below 0 a wheel slips", authority.grip_margin_N,
                   arguments={"acceleration_m_per_s2": REQUIRED} | DIRECTION, needs="friction coefficient"),
     ArguedMeasure("total_mass_kg", "Mass with payload", _mass_kg),
     ArguedMeasure("total_yaw_inertia_kgm2", "Moment of inertia about the vertical through the centre of mass, "

@@ -20,7 +20,6 @@ from laconic.tools.report import (
     friction_cost,
     peers,
     referenced,
-    single,
     speed,
     stability,
     targets,
@@ -94,12 +93,12 @@ def _edges(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Work
     advance(0, "extremes and references")
     if referenced.reference_file("trajectories.json") is None:
         report.notes.append("The reference trajectories are not in this checkout: not compared.")
-    straight = single.straight_run(bench)
-    long_runs = [{"what": "heading", "found": float(single.heading_after_many_turns(bench))},
+    straight = accuracy.straight_run(bench)
+    long_runs = [{"what": "heading", "found": float(accuracy.heading_after_many_turns(bench))},
                  {"what": "x", "found": straight["error"]}]
     return {"extremes": extremes.extreme_rows(REALS, advance), "rounding": [rounding_row(scene) for scene in scenes],
             "verified": referenced.verified_rows(),
-            "prototype": referenced.table_rows(), "single": single.s1_rows(bench, METHODS), "long": long_runs}
+            "prototype": referenced.table_rows(), "single": accuracy.s1_rows(bench, METHODS), "long": long_runs}
 
 
 def _speed(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Workshop, folder: Path, quick: bool,
