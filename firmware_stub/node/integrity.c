@@ -28,6 +28,10 @@ static const memory_part model_parts[] = {
 #endif
 #if LACONIC_NODE_WITH_HINGES
     PART(hinges.model),
+#if LACONIC_NODE_WITH_SLIP
+    PART(hinges.slips),
+    PART(hinges.tree_model),
+#endif
     PART(hinges.integrator),
     PART(hinges.start),
     PART(hinges.first),
@@ -48,6 +52,10 @@ static const memory_part shape_parts[] = {
     SPAN(plant.model.wheel_count, plant.model.dof),
 #if LACONIC_NODE_WITH_HINGES
     SPAN(hinges.model.body_count, hinges.model.coordinated),
+#if LACONIC_NODE_WITH_SLIP
+    PART(hinges.slips),
+    SPAN(hinges.tree_model.body_count, hinges.tree_model.point_count),
+#endif
 #endif
 };
 
@@ -193,16 +201,26 @@ static bool is_sum(const laconic_sum *sum) {
 #if LACONIC_NODE_WITH_HINGES
 static bool is_possible_with_hinges(const laconic_node *node, const laconic_integrity_limits *limits) {
     const laconic_node_hinges *hinges = &node->hinges;
+    const laconic_sum *x_m = &hinges->state.x_m, *y_m = &hinges->state.y_m;
+    const laconic_heading *heading = &hinges->state.heading, *hinge = hinges->state.hinge;
     laconic_articulated_motion motion;
+#if LACONIC_NODE_WITH_SLIP
+    if (hinges->slips) {
+        x_m = &hinges->tree.x_m;
+        y_m = &hinges->tree.y_m;
+        heading = &hinges->tree.heading;
+        hinge = hinges->tree.hinge;
+    }
+#endif
     laconic_node_motion_of(&motion, node);
-    bool good = is_within(motion.yaw_rate_rad_per_s, limits->yaw_rate_rad_per_s) && is_sum(&hinges->state.x_m) &&
-                is_sum(&hinges->state.y_m) && is_within(motion.x_m, limits->distance_m) &&
-                is_within(motion.y_m, limits->distance_m) && is_within(hinges->state.heading.rest, 1);
+    bool good = is_within(motion.yaw_rate_rad_per_s, limits->yaw_rate_rad_per_s) && is_sum(x_m) && is_sum(y_m) &&
+                is_within(motion.x_m, limits->distance_m) && is_within(motion.y_m, limits->distance_m) &&
+                is_within(heading->rest, 1);
     for (int k = 0; k < 2; k++) good = good && is_within(motion.velocity_m_per_s[k], limits->speed_m_per_s);
     for (int32_t i = 0; i < hinges->model.dof && i < LACONIC_MAX_VELOCITIES; i++)
         good = good && is_sum(&hinges->state.eta[i]);
     for (int32_t b = 0; b < hinges->model.body_count && b < LACONIC_MAX_BODIES; b++)
-        good = good && is_within(hinges->state.hinge[b].rest, 1) && is_finite(motion.hinge_rate_rad_per_s[b]);
+        good = good && is_within(hinge[b].rest, 1) && is_finite(motion.hinge_rate_rad_per_s[b]);
     for (int32_t i = 0; i < node->plant.model.wheel_count && i < LACONIC_MAX_WHEELS; i++)
         good = good && is_within(node->input[0].voltage_V[i], limits->voltage_V);
     return good && node->state <= LACONIC_WIRE_STATE_DRIVES;

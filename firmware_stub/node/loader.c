@@ -38,6 +38,8 @@ typedef struct location {
 #define IN_BODY(member) LACONIC_MAX_BODIES, sizeof(laconic_body), AT(bodies.body[0].member)
 #define IN_WHEEL_BODY(member) LACONIC_MAX_WHEELS, sizeof(int32_t), AT(bodies.wheel_##member[0])
 #define IN_BODY_COUNT(member) 0, 0, AT(bodies.member##_count)
+#define IN_TREE_HINGE(member) LACONIC_MAX_BODIES, sizeof(laconic_tree_hinge), AT(bodies.tree_hinge[0].member)
+#define IN_TREE_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_tree_wheel), AT(bodies.tree_wheel[0].member)
 #define ITEMS_OF(member) sizeof(((laconic_node_bodies *)NULL)->member) / sizeof(laconic_real)
 #define IN_HINGE_COMMAND(member) ITEMS_OF(member), sizeof(laconic_real), AT(bodies.member)
 #define IN_HINGE_START(member) \
@@ -77,6 +79,12 @@ bool laconic_loader_find(laconic_loader_place *place, uint8_t field, uint8_t k) 
 }
 #endif
 
+/* In a node with hinges, of ground with friction under them. */
+static bool is_of_slip(uint8_t field) {
+    const bool numbered = field >= LACONIC_WIRE_FIELD_BODY_COM_Z && field <= LACONIC_WIRE_FIELD_CREEP;
+    return !LACONIC_NODE_WITH_SLIP && numbered && field != LACONIC_WIRE_FIELD_HINGE_ANGLE; /* an input */
+}
+
 /* Fields of laconic.dbc that are not in the table: of a motor, which the rig fits, and what this build leaves out. */
 static bool is_left_out(uint8_t field) {
     const bool of_slope = field == LACONIC_FIELD_SLOPE || field == LACONIC_FIELD_SLOPE_HEADING;
@@ -87,7 +95,7 @@ static bool is_left_out(uint8_t field) {
     const bool of_friction = field >= LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT && field < LACONIC_FIELD_COUNT;
     return of_motor || (!LACONIC_WITH_OWN_WHEELS && of_wheel) || (!LACONIC_WITH_SLOPE && of_slope) ||
            (!LACONIC_WITH_FRICTION && of_friction && !of_slope) || (!LACONIC_NODE_WITH_DRIVES && of_drives) ||
-           (!LACONIC_NODE_WITH_SENSORS && of_sensors);
+           (!LACONIC_NODE_WITH_SENSORS && of_sensors) || (LACONIC_NODE_WITH_HINGES && is_of_slip(field));
 }
 
 static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_t item) {

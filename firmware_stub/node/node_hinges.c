@@ -17,24 +17,99 @@ static uint8_t not_of_hinges(const laconic_parameters *new) {
     return 0;
 }
 
-static laconic_status prepare(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+static void join(laconic_articulated_vehicle *whole, const laconic_parameters *new) {
     const laconic_node_bodies *bodies = &new->bodies;
-    laconic_articulated_vehicle whole = {.base = new->vehicle, .body_count = bodies->body_count};
-    memcpy(whole.wheel_body, bodies->wheel_body, sizeof whole.wheel_body);
-    memcpy(whole.body, bodies->body, sizeof whole.body);
-    return laconic_articulated_prepare(&found->model, &whole, why);
+    whole->base = new->vehicle;
+    whole->body_count = bodies->body_count;
+    memcpy(whole->wheel_body, bodies->wheel_body, sizeof whole->wheel_body);
+    memcpy(whole->body, bodies->body, sizeof whole->body);
 }
 
-static laconic_status set_start(laconic_node_hinges *hinges, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_SLIP
+
+static laconic_status prepare_tree(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+    laconic_tree_vehicle vehicle;
+    memset(&vehicle, 0, sizeof vehicle);
+    join(&vehicle.hinged, new);
+    memcpy(vehicle.hinge, new->bodies.tree_hinge, sizeof vehicle.hinge);
+    memcpy(vehicle.wheel, new->bodies.tree_wheel, sizeof vehicle.wheel);
+    return laconic_tree_prepare(&found->tree_model, &vehicle, why);
+}
+
+static laconic_status refuse_run(laconic_refusal *why, laconic_status status, laconic_field field) {
+    why->status = status;
+    why->field = field;
+    return status;
+}
+
+/* What the frames of every vehicle with hinges read of its model. */
+static void describe_tree(laconic_node_hinges *found, laconic_real step_s) {
+    const laconic_tree_model *m = &found->tree_model;
+    found->slips = true;
+    found->integrator.step_s = step_s;
+    found->model.wheel_count = m->wheel_count;
+    found->model.body_count = m->body_count;
+    for (int32_t b = 0; b < m->body_count; b++) {
+        const bool prescribed = m->body[b + 1].hinge == LACONIC_HINGE_PRESCRIBED;
+        found->model.link[b].motion = prescribed ? LACONIC_MOTION_PRESCRIBED : LACONIC_MOTION_OWN;
+        found->model.link[b].gain_Nm_per_V = m->motor[m->wheel_count + b].gain_Nm_per_V;
+    }
+}
+
+/* One step of auto; a whole number of it is checked by each step. */
+static laconic_status find_tree(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+    if (new->method != LACONIC_ARTICULATED_AUTO)
+        return refuse_run(why, LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_FIELD_METHOD);
+    if (!(new->step_s > 0)) return refuse_run(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
+    const laconic_status status = prepare_tree(found, new, why);
+    if (status == LACONIC_OK) describe_tree(found, new->step_s);
+    return status;
+}
+
+/* As the scene has it: speeds of all 0 are none. */
+static laconic_status set_tree_start(laconic_node_hinges *hinges, const laconic_real *wheel_speed_rad_per_s,
+                                     laconic_refusal *why) {
+    laconic_tree_start start;
+    memset(&start, 0, sizeof start);
+    start.hinged = hinges->start;
+    memcpy(start.wheel_speed_rad_per_s, wheel_speed_rad_per_s, sizeof start.wheel_speed_rad_per_s);
+    memcpy(hinges->angle_rad, hinges->start.hinge_angle_rad, sizeof hinges->angle_rad);
+    return laconic_tree_state_set(&hinges->tree, &hinges->tree_model, &start, why);
+}
+#endif
+
+static bool is_to_slip(const laconic_parameters *new) {
+#if LACONIC_NODE_WITH_SLIP
+    return new->vehicle.ground.friction_coefficient != 0;
+#else
+    (void)new;
+    return false;
+#endif
+}
+
+static laconic_status prepare(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+    laconic_articulated_vehicle whole;
+#if LACONIC_NODE_WITH_SLIP
+    if (is_to_slip(new)) return find_tree(found, new, why);
+#endif
+    memset(&whole, 0, sizeof whole);
+    join(&whole, new);
+    const laconic_status status = laconic_articulated_prepare(&found->model, &whole, why);
+    if (status != LACONIC_OK) return status;
+    return laconic_articulated_integrator_prepare(&found->integrator, new->method, &found->model, new->step_s, why);
+}
+
+static laconic_status set_start(laconic_node_hinges *hinges, const laconic_start *given, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_SLIP
+    if (hinges->slips) return set_tree_start(hinges, given->wheel_speed_rad_per_s, why);
+#endif
+    (void)given;
     return laconic_articulated_state_set(&hinges->state, NULL, &hinges->model, &hinges->start, &hinges->first, why);
 }
 
 /* The loaded vehicle, its step and its start. */
 static laconic_status find(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
-    laconic_status status = prepare(found, new, why);
-    if (status == LACONIC_OK)
-        status =
-            laconic_articulated_integrator_prepare(&found->integrator, new->method, &found->model, new->step_s, why);
+    const laconic_status status = prepare(found, new, why);
     if (status != LACONIC_OK) return status;
     found->here = true;
     found->start = new->bodies.start;
@@ -44,7 +119,7 @@ static laconic_status find(laconic_node_hinges *found, const laconic_parameters 
     memcpy(found->first.hinge_rate_rad_per_s, new->bodies.hinge_rate_rad_per_s,
            sizeof new->bodies.hinge_rate_rad_per_s);
     memcpy(found->first.twist, new->bodies.twist, sizeof new->bodies.twist);
-    return set_start(found, why);
+    return set_start(found, &new->start, why);
 }
 
 #if LACONIC_NODE_WITH_DRIVES
@@ -52,6 +127,9 @@ static laconic_status find(laconic_node_hinges *found, const laconic_parameters 
 static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *found, uint8_t *field, uint8_t *item) {
     const laconic_drive_plan *plan = &node->loader.parameters.drives;
     const laconic_articulated_model *m = &found->model;
+    *field = LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
+    *item = 0;
+    if (plan->protocol != 0 && is_to_slip(&node->loader.parameters)) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     const uint8_t status = laconic_node_check_drives(node, plan, m->wheel_count + m->body_count, field, item);
     if (status != 0) return status;
     for (int32_t b = 0; b < m->body_count; b++) {
@@ -125,7 +203,7 @@ void laconic_node_drop_hinges(laconic_node *node) {
 }
 
 laconic_status laconic_node_restart_hinges(laconic_node *node, laconic_refusal *why) {
-    const laconic_status status = set_start(&node->hinges, why);
+    const laconic_status status = set_start(&node->hinges, &node->start, why);
     if (status == LACONIC_OK) node->plant.steps = 0;
     return status;
 }
@@ -133,12 +211,14 @@ laconic_status laconic_node_restart_hinges(laconic_node *node, laconic_refusal *
 /* ------------------------------------------------------------------------------------- SELECT -- */
 
 #define UNUSED_SENDS 0xC0U
-#define UNUSED_TAKES 0xF0U
+#define UNUSED_TAKES 0xE0U
 
 bool laconic_node_may_select_hinges(const laconic_node *node, const uint8_t *data) {
     if (((data[5] & UNUSED_SENDS) | (data[6] & UNUSED_TAKES) | data[7]) != 0) return false;
     if (!node->hinges.here) return (data[5] | data[6]) == 0;
     const uint32_t raw = data[3] & 0x7FU & RAW_NOT_OF_HINGES;
+    const bool held = (data[4] & LACONIC_RAW_SAMPLED) == 0, angles = (data[6] & LACONIC_RAW_STEERING_ANGLE) != 0;
+    if (slips(node) ? !held || (data[6] & LACONIC_RAW_TWIST) != 0 : angles) return false;
     return (data[2] & SENDS_NOT_OF_HINGES) == 0 && raw == 0 && (data[4] & SELECTS_ESTIMATE) == 0;
 }
 
@@ -164,7 +244,8 @@ static void hold(laconic_articulated_input *input) {
     memset(input->twist_rate, 0, sizeof input->twist_rate);
 }
 
-/* Forces and rates become 0, or before the first step those of the start; steered wheels keep their direction. */
+/* Forces and rates become 0, or before the first step those of the start; steered wheels and the angles of servos keep
+ * their direction. */
 void laconic_node_clear_hinge_inputs(laconic_node *node) {
     laconic_node_hinges *hinges = &node->hinges;
     const bool at_start = node->plant.steps == 0;
@@ -173,6 +254,9 @@ void laconic_node_clear_hinge_inputs(laconic_node *node) {
         if (at_start) hinges->input[k] = hinges->first;
         memcpy(hinges->input[k].twist, at_start ? hinges->first.twist : hinges->twist, sizeof hinges->twist);
     }
+#if LACONIC_NODE_WITH_SLIP
+    if (at_start) memcpy(hinges->angle_rad, hinges->start.hinge_angle_rad, sizeof hinges->angle_rad);
+#endif
     hinges->changes = false;
 }
 
@@ -203,6 +287,35 @@ static void set_twist(laconic_node_hinges *hinges, const laconic_real given[3]) 
 
 #define TWIST_PAGE 6U
 
+#if LACONIC_NODE_WITH_SLIP
+/* Where a hinge takes its command on ground with friction: a rate, or the angle of a servo or loop; NULL: neither. */
+static laconic_real *target_of(laconic_node_hinges *hinges, int32_t b) {
+    const laconic_tree_body *body = &hinges->tree_model.body[b + 1];
+    if (body->servo_gain_Nm_per_rad != 0 || body->loop_V_per_rad != 0) return &hinges->angle_rad[b];
+    const bool rates = body->servo_damping_Nms != 0 || body->loop_Vs_per_rad != 0;
+    return rates || body->hinge == LACONIC_HINGE_PRESCRIBED ? &hinges->input[0].hinge_rate_rad_per_s[b] : NULL;
+}
+
+/* As set_three; a voltage acts at once, and so does a target. */
+static bool set_three_targets(laconic_node_hinges *hinges, bool voltages, int32_t first, const laconic_real number[3]) {
+    laconic_real *to[3] = {NULL, NULL, NULL};
+    if (first >= hinges->model.body_count) return false;
+    for (int32_t k = 0; k < 3; k++) {
+        const int32_t b = first + k;
+        if (b >= hinges->model.body_count)
+            to[k] = NULL;
+        else if (!voltages)
+            to[k] = target_of(hinges, b);
+        else if (hinges->model.link[b].gain_Nm_per_V != 0)
+            to[k] = &hinges->input[0].hinge_voltage_V[b];
+        if (number[k] != 0 && to[k] == NULL) return false;
+    }
+    for (int32_t k = 0; k < 3; k++)
+        if (to[k] != NULL) *to[k] = number[k];
+    return true;
+}
+#endif
+
 /* Three rates or voltages from a hinge on. False iff a number is for none, or one that takes no such command. */
 static bool set_three(laconic_node_hinges *hinges, bool voltages, int32_t first, const laconic_real number[3]) {
     const laconic_articulated_model *m = &hinges->model;
@@ -230,6 +343,9 @@ bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t 
     for (int k = 0; k < 3; k++) number[k] = (laconic_real)raw[k] / (laconic_real)per_unit;
     if (!node->hinges.here || page > TWIST_PAGE || (page == TWIST_PAGE && !node->hinges.model.coordinated))
         return false;
+#if LACONIC_NODE_WITH_SLIP
+    if (node->hinges.slips) return set_three_targets(&node->hinges, voltages, 3 * (int32_t)(page % 3U), number);
+#endif
     if (page == TWIST_PAGE) {
         set_twist(&node->hinges, number);
     } else if (!set_three(&node->hinges, voltages, 3 * (int32_t)(page % 3U), number)) {
@@ -264,10 +380,28 @@ static laconic_status step_between(laconic_node *node, laconic_refusal *why) {
     return status;
 }
 
+#if LACONIC_NODE_WITH_SLIP
+/* Steps under the held input. */
+static laconic_status step_tree(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    laconic_tree_input held = {.hinged = hinges->input[0]};
+    laconic_status status = LACONIC_OK;
+    memcpy(held.hinge_angle_rad, hinges->angle_rad, sizeof held.hinge_angle_rad);
+    for (; steps > 0 && status == LACONIC_OK; steps--) {
+        status = laconic_tree_step(&hinges->tree_model, hinges->integrator.step_s, &hinges->tree, &held, why);
+        if (status == LACONIC_OK) node->plant.steps++;
+    }
+    return status;
+}
+#endif
+
 laconic_status laconic_node_step_hinges(laconic_node *node, uint64_t steps, laconic_refusal *why) {
     laconic_articulated_input *input = node->hinges.input;
     laconic_status status = LACONIC_OK;
     for (int k = 0; k < 2; k++) input[k].base = node->input[0];
+#if LACONIC_NODE_WITH_SLIP
+    if (node->hinges.slips) return step_tree(node, steps, why);
+#endif
     if (!node->hinges.changes) {
         input[1] = input[0];
     } else if (steps > 0) {
@@ -301,41 +435,22 @@ laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t n
 /* ------------------------------------------------------------------------------------- outputs -- */
 
 void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node) {
+#if LACONIC_NODE_WITH_SLIP
+    laconic_tree_outputs outputs;
+    if (node->hinges.slips) {
+        laconic_tree_outputs_of(&outputs, &node->hinges.tree_model, &node->hinges.tree);
+        *motion = outputs.motion;
+        return;
+    }
+#endif
     laconic_articulated_motion_of(motion, &node->hinges.model, &node->hinges.state);
 }
 
-void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node) {
+void laconic_node_collect_hinges(laconic_raw_output *raw, const laconic_node *node) {
     laconic_articulated_motion motion;
-    if (!node->hinges.here) {
-        laconic_pose_of(pose, &node->plant.model, &node->plant.state);
-        return;
-    }
     laconic_node_motion_of(&motion, node);
-    pose->x_m = motion.x_m;
-    pose->y_m = motion.y_m;
-    pose->heading_rad = motion.heading_rad;
-    pose->heading_wrapped_rad = laconic_angle_wrapped(motion.heading_rad);
-}
-
-void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node) {
-    laconic_articulated_motion motion;
-    if (!node->hinges.here) {
-        laconic_plant_wheel_speeds(&node->plant, speed_rad_per_s);
-        return;
-    }
-    laconic_node_motion_of(&motion, node);
-    memcpy(speed_rad_per_s, motion.wheel_speed_rad_per_s,
-           (size_t)node->hinges.model.wheel_count * sizeof *speed_rad_per_s);
-}
-
-void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node) {
-    laconic_articulated_motion motion;
-    if (!node->hinges.here) {
-        laconic_plant_wheel_angles(&node->plant, angle_rad);
-        return;
-    }
-    laconic_node_motion_of(&motion, node);
-    memcpy(angle_rad, motion.wheel_angle_rad, (size_t)node->hinges.model.wheel_count * sizeof *angle_rad);
+    laconic_raw_collect_hinges(raw, &motion, node->hinges.model.wheel_count, node->hinges.model.body_count,
+                               &node->input[0]);
 }
 
 #else

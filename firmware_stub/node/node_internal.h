@@ -97,6 +97,16 @@ static inline bool has_hinges(const laconic_node *node) {
 #endif
 }
 
+/* Whether the vehicle has hinges, on ground with friction. */
+static inline bool slips(const laconic_node *node) {
+#if LACONIC_NODE_WITH_SLIP
+    return node->hinges.here && node->hinges.slips;
+#else
+    (void)node;
+    return false;
+#endif
+}
+
 static inline bool listens_to_voltages(const laconic_node *node) {
     if (LACONIC_NODE_DRIVES_ONLY) return false;
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
@@ -200,7 +210,9 @@ laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refu
 laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why);
 #endif
 void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node);
-/* Of every vehicle. */
+/* Reads the chosen outputs. */
+void laconic_node_collect_hinges(laconic_raw_output *raw, const laconic_node *node);
+/* node_pack.c: of every vehicle. */
 void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node);
 void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node);
 void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node);

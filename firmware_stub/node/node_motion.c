@@ -69,6 +69,9 @@ bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment,
     if (node->state != LACONIC_WIRE_STATE_LOCKSTEP || node->lockstep.steps_due > 0) return false;
 #if LACONIC_NODE_WITH_HINGES
     node->raw_input.hinged = node->hinges.input; /* of this node, which may be a copy of another */
+#if LACONIC_NODE_WITH_SLIP
+    node->raw_input.angle_rad = node->hinges.angle_rad;
+#endif
 #endif
     return laconic_raw_take(&node->raw_input, node->input, node->plant.model.wheel_count, segment, mask, bytes, size);
 }

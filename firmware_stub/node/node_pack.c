@@ -18,6 +18,43 @@ static int32_t scaled(laconic_real value, int32_t per_unit, int32_t largest, uin
 #define SCALED(value, name, overrange) \
     scaled(value, LACONIC_WIRE_##name##_PER_UNIT, LACONIC_WIRE_##name##_LARGEST, overrange)
 
+#if LACONIC_NODE_WITH_HINGES
+/* What frames of every vehicle tell, of one with hinges. */
+void laconic_node_pose_of(laconic_pose *pose, const laconic_node *node) {
+    laconic_articulated_motion motion;
+    if (!node->hinges.here) {
+        laconic_pose_of(pose, &node->plant.model, &node->plant.state);
+        return;
+    }
+    laconic_node_motion_of(&motion, node);
+    pose->x_m = motion.x_m;
+    pose->y_m = motion.y_m;
+    pose->heading_rad = motion.heading_rad;
+    pose->heading_wrapped_rad = laconic_angle_wrapped(motion.heading_rad);
+}
+
+void laconic_node_wheel_speeds(laconic_real speed_rad_per_s[], const laconic_node *node) {
+    laconic_articulated_motion motion;
+    if (!node->hinges.here) {
+        laconic_plant_wheel_speeds(&node->plant, speed_rad_per_s);
+        return;
+    }
+    laconic_node_motion_of(&motion, node);
+    memcpy(speed_rad_per_s, motion.wheel_speed_rad_per_s,
+           (size_t)node->hinges.model.wheel_count * sizeof *speed_rad_per_s);
+}
+
+void laconic_node_wheel_angles(laconic_real angle_rad[], const laconic_node *node) {
+    laconic_articulated_motion motion;
+    if (!node->hinges.here) {
+        laconic_plant_wheel_angles(&node->plant, angle_rad);
+        return;
+    }
+    laconic_node_motion_of(&motion, node);
+    memcpy(angle_rad, motion.wheel_angle_rad, (size_t)node->hinges.model.wheel_count * sizeof *angle_rad);
+}
+#endif
+
 static void pack_result(const laconic_node *node, uint8_t *data) {
     uint8_t offset = 0;
     while ((node->answers_due & BIT_OF(offset)) == 0) offset++;
@@ -48,7 +85,7 @@ static uint32_t version(void) {
 #define METHOD_BITS 8 /* of IDENTITY.methods; a later method has none, and COMMIT refuses one that is not there */
 
 static void pack_identity(const laconic_node *node, uint8_t *data) {
-    data[1] = (uint8_t)(speaks_fd(node) << 4 | LACONIC_NODE_WITH_HINGES << 5);
+    data[1] = (uint8_t)(speaks_fd(node) << 4 | LACONIC_NODE_WITH_HINGES << 5 | LACONIC_NODE_WITH_SLIP << 6);
     data[2] = LACONIC_WIRE_VERSION;
     put16(data + 3, version());
     data[5] = sizeof(laconic_real);

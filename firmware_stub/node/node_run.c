@@ -31,7 +31,7 @@ void laconic_node_publish(laconic_node *node) {
 #endif
 #if LACONIC_NODE_WITH_HINGES
     if (has_hinges(node))
-        laconic_raw_collect_hinges(&node->raw_output, &node->hinges.model, &node->hinges.state, &node->input[0]);
+        laconic_node_collect_hinges(&node->raw_output, node);
     else
 #endif
         laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], shown);

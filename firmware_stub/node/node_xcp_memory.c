@@ -65,7 +65,7 @@ static void collect(laconic_node *node, laconic_raw_output *raw) {
 #endif
 #if LACONIC_NODE_WITH_HINGES
     if (has_hinges(node)) {
-        laconic_raw_collect_hinges(raw, &node->hinges.model, &node->hinges.state, &node->input[0]);
+        laconic_node_collect_hinges(raw, node);
         return;
     }
 #endif

@@ -52,6 +52,7 @@ static int32_t numbers_of_hinges(const laconic_raw_input *raw) {
     if (take & LACONIC_RAW_HINGE_VOLTAGE) count += raw->hinge_count;
     if (take & LACONIC_RAW_HINGE_TORQUE) count += raw->hinge_count;
     if (take & LACONIC_RAW_STEERING_RATE) count += raw->hinge_count;
+    if (take & LACONIC_RAW_STEERING_ANGLE) count += raw->hinge_count;
     return count;
 }
 
@@ -64,7 +65,9 @@ static laconic_real *slot_of_hinge(const laconic_raw_input *raw, int32_t sample,
         if (k < raw->hinge_count) return &all[group][k];
         k -= raw->hinge_count;
     }
-    return &input->twist[k];
+    if ((raw->take_hinges & LACONIC_RAW_TWIST) != 0 && k < 3) return &input->twist[k];
+    if ((raw->take_hinges & LACONIC_RAW_TWIST) != 0) k -= 3;
+    return &raw->angle_rad[k];
 }
 
 /* Numbers of one input, and how many inputs there are. */
@@ -72,6 +75,7 @@ static int32_t numbers_of_each(const laconic_raw_input *raw, int32_t wheel_count
     return numbers_of(raw->take, wheel_count) + numbers_of_hinges(raw);
 }
 
+/* Wheels that slip have held inputs: SELECT refuses samples of them. */
 static int32_t samples_of(const laconic_raw_input *raw) { return raw->hinge_count > 0 ? 2 : 3; }
 
 static laconic_real *slot_of(const laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, int32_t sample,
@@ -190,19 +194,17 @@ static laconic_real *collect_motion(laconic_real *to, uint8_t send, const laconi
     return to;
 }
 
-void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulated_model *model,
-                                const laconic_articulated_state *state, const laconic_input *held) {
-    laconic_articulated_motion motion;
-    laconic_articulated_motion_of(&motion, model, state);
-    laconic_real *to = collect_motion(raw->number, raw->send, &motion, model->wheel_count);
+void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulated_motion *motion, int32_t wheel_count,
+                                int32_t body_count, const laconic_input *held) {
+    laconic_real *to = collect_motion(raw->number, raw->send, motion, wheel_count);
     if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
-        to = copied(to, held->axle_torque_Nm, model->wheel_count);
+        to = copied(to, held->axle_torque_Nm, wheel_count);
     if (raw->send_hinges & LACONIC_RAW_VELOCITY) {
-        to = copied(to, motion.velocity_m_per_s, 2);
-        *to++ = motion.yaw_rate_rad_per_s;
+        to = copied(to, motion->velocity_m_per_s, 2);
+        *to++ = motion->yaw_rate_rad_per_s;
     }
-    if (raw->send_hinges & LACONIC_RAW_HINGE_ANGLE) to = copied(to, motion.hinge_angle_rad, model->body_count);
-    if (raw->send_hinges & LACONIC_RAW_HINGE_RATE) to = copied(to, motion.hinge_rate_rad_per_s, model->body_count);
+    if (raw->send_hinges & LACONIC_RAW_HINGE_ANGLE) to = copied(to, motion->hinge_angle_rad, body_count);
+    if (raw->send_hinges & LACONIC_RAW_HINGE_RATE) to = copied(to, motion->hinge_rate_rad_per_s, body_count);
     begin_output(raw, to);
 }
 #endif

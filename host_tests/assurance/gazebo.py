@@ -375,27 +375,30 @@ def _rows(name: str, runs: Sequence[tuple[str, float, Pose, float]], right: Pose
 
 
 def picture(rows: Sequence[Row], file: Path) -> None:
-    """Error against step."""
+    """Error against step, narrow, with its legend below: so it is legible on a telephone."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     from matplotlib import pyplot
+    from matplotlib.lines import Line2D
 
-    mpl.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "gazebo"})
-    figure, axes = pyplot.subplots(figsize=(8, 4))
-    for at, name in enumerate(dict.fromkeys(row.robot for row in rows)):
-        for which, mark in (("Gazebo", "o-"), ("laconic", "s--")):
+    mpl.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "gazebo", "font.size": 10})
+    figure, axes = pyplot.subplots(figsize=(4.4, 5.6), layout="constrained")
+    marks, names = {"Gazebo": "o-", "laconic": "s--"}, list(dict.fromkeys(row.robot for row in rows))
+    for at, name in enumerate(names):
+        for which, mark in marks.items():
             points = [(1e3 * row.step_s, max(row.error_mm, 1e-9)) for row in rows
                       if (row.robot, row.program) == (name, which) and not math.isnan(row.error_mm)]
             if points:
-                axes.loglog(*zip(*points, strict=True), mark, color=f"C{at}", label=f"{which}: {name}")
+                axes.loglog(*zip(*points, strict=True), mark, color=f"C{at}")
     steps_ms = sorted({1e3 * row.step_s for row in rows})
     axes.set_xticks(steps_ms, [f"{each:g}" for each in steps_ms])
     axes.set_xticks([], minor=True)
     axes.set_xlabel("step in ms")
     axes.set_ylabel("error of the place at the end in mm\n(less than 1e-9 is drawn there)")
-    axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.tight_layout()
+    lines = {name: Line2D([], [], color=f"C{at}", linewidth=3) for at, name in enumerate(names)}
+    lines |= {which: axes.plot([], [], mark, color="k")[0] for which, mark in marks.items()}
+    figure.legend(lines.values(), lines.keys(), fontsize=10, loc="outside lower center", ncols=2, frameon=False)
     figure.savefig(file, metadata={"Date": None})
 
 

@@ -10,11 +10,10 @@ from pathlib import Path
 
 from . import fmi2, fmi3
 from .description import Description, identifier_in, parse, start_values, token_in, with_identifier, with_values
-from .enumerations import without_enumerations
 from .for_vehicle import for_vehicle
 from .of_step import of_step
 from .package import pack, start_file
-from .scalars import elements_of
+from .scalars import elements_of, without_enumerations
 from .slipping import of_slipping
 
 MOST_ROWS = 1000

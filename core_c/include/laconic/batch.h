@@ -21,6 +21,7 @@
 #define LACONIC_BATCH_H
 
 #include "laconic/articulated.h"
+#include "laconic/articulated_friction.h"
 #include "laconic/laconic.h"
 
 #ifdef __cplusplus
@@ -155,31 +156,46 @@ void laconic_batch_outputs(const laconic_batch *batch, int32_t first_lane, int32
 
 /* A prepared vehicle with hinges; lanes may share it. The model is the caller's. */
 typedef struct laconic_articulated_kind {
-    const laconic_articulated_model *model;
+    const laconic_articulated_model *model; /* on ideal ground                          */
     laconic_articulated_integrator integrator;
+#if LACONIC_WITH_FRICTION
+    const laconic_tree_model *tree; /* on ground with friction: instead of the two above; NULL: on ideal ground */
+    laconic_real tree_step_s;
+#endif
 } laconic_articulated_kind;
 
 /* The caller fills it with arrays of its own, one item for each lane. States are set by
- * laconic_articulated_state_set(). */
+ * laconic_articulated_state_set(), those of trees by laconic_tree_state_set(). States and inputs of a ground that no
+ * kind has may be NULL. */
 typedef struct laconic_articulated_batch {
     const laconic_articulated_kind *kinds;
     const int32_t *kind_of; /* of each lane, from 0                       */
     laconic_articulated_state *states;
     const laconic_articulated_input *inputs;
+#if LACONIC_WITH_FRICTION
+    laconic_tree_state *tree_states;
+    const laconic_tree_input *tree_inputs;
+#endif
     laconic_refusal *why; /* of a refused lane                          */
     int32_t *status;      /* of the last run; a laconic_status          */
     uint64_t *missed;     /* steps that a lane did not take, counted on */
 } laconic_articulated_batch;
 
-/* Takes `steps` steps of some lanes with the inputs held, each by laconic_articulated_step(), so with its bits and its
- * cost. A lane stops before the first step that is refused, and the others continue. Returns how many lanes were
- * refused. Runs of different lanes may take place at the same time. */
+/* Takes `steps` steps of some lanes with the inputs held, each by laconic_articulated_step() or laconic_tree_step(), so
+ * with its bits and its cost. A lane stops before the first step that is refused, and the others continue. Returns how
+ * many lanes were refused. Runs of different lanes may take place at the same time. */
 int32_t laconic_articulated_batch_run(laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
                                       uint64_t steps);
 
-/* Motions of some lanes, as laconic_articulated_motion_of() gives them. */
+/* Motions of some lanes, as laconic_articulated_motion_of() or laconic_tree_outputs_of() gives them. */
 void laconic_articulated_batch_observe(const laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
                                        laconic_articulated_motion *motions);
+
+#if LACONIC_WITH_FRICTION
+/* All outputs of some lanes, which are on ground with friction. */
+void laconic_articulated_batch_outputs(const laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
+                                       laconic_tree_outputs *outputs);
+#endif
 
 #endif
 

@@ -168,11 +168,10 @@ laconic_status laconic_articulated_adaptive(laconic_articulated_state *state, co
     const real unit = R(1) / (real)ADAPTIVE_UNITS;
     laconic_articulated_state after = *state;
     uint32_t part = ADAPTIVE_UNITS;
-    int32_t trials = 0;
     const real energy_J =
         laconic_articulated_keeps_energy(m, course) ? energy_of_state(m, state, &course->start) : R(-1);
     while (done % part != 0U) part /= 2U;
-    while (done < ADAPTIVE_UNITS && trials++ < MOST_TRIALS) {
+    for (int32_t trials = 0; done < ADAPTIVE_UNITS && trials < MOST_TRIALS; trials++) {
         adaptive_part p = {m, course, unit * (real)done, unit * (real)part, energy_J, false};
         bool taken = take_judged(&after, &p);
         p.stiff = !taken;

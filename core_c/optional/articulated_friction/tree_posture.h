@@ -52,7 +52,7 @@ typedef struct tree_factor {
 
 /* Hinges on the path of a body. `star`: all hinges are on body 0, as of most vehicles; given as a constant, it turns
  * loops along paths into one step at most. */
-INLINE int32_t tree_depth(const tree_body *on, bool star) { return star ? (int32_t)(on->depth > 0) : on->depth; }
+INLINE int32_t tree_depth(const tree_body *on, bool star) { return star ? (on->depth > 0 ? 1 : 0) : on->depth; }
 
 INLINE real tree_dot(const tree_row *row, const tree_body *on, const tree_vector *x, bool star) {
     real sum = dot(row->base, x->base);

@@ -33,7 +33,13 @@
 #else
 #define LACONIC_NODE_BUILT_SENSORS laconic_node_built_with_LACONIC_NODE_WITH_SENSORS_0_and_LACONIC_NODE_WITH_XCP_0
 #endif
-#if LACONIC_NODE_WITH_HINGES && LACONIC_NODE_WITH_ESTIMATE /* one name, since a node without both has no call more */
+#if LACONIC_NODE_WITH_SLIP && LACONIC_NODE_WITH_ESTIMATE
+#define LACONIC_NODE_BUILT_ESTIMATE \
+    LACONIC_JOINED(laconic_node_built_with_ESTIMATE_1_and_HINGES_1_and_SLIP_1_of_bodies_, LACONIC_MAX_BODIES)
+#elif LACONIC_NODE_WITH_SLIP
+#define LACONIC_NODE_BUILT_ESTIMATE \
+    LACONIC_JOINED(laconic_node_built_with_ESTIMATE_0_and_HINGES_1_and_SLIP_1_of_bodies_, LACONIC_MAX_BODIES)
+#elif LACONIC_NODE_WITH_HINGES && LACONIC_NODE_WITH_ESTIMATE /* one name, since a node without both has no call more */
 #define LACONIC_NODE_BUILT_ESTIMATE \
     LACONIC_JOINED(laconic_node_built_with_ESTIMATE_1_and_HINGES_1_of_bodies_, LACONIC_MAX_BODIES)
 #elif LACONIC_NODE_WITH_HINGES

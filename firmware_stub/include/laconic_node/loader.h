@@ -5,8 +5,17 @@
 #include "laconic/laconic.h"
 #include "laconic_drives/settings.h"
 #include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS, LACONIC_NODE_WITH_HINGES */
+/* 1: vehicles with hinges also on ground with friction; links the core's articulated_friction. It is nothing in a build
+ * without hinges or without friction. */
+#if !defined LACONIC_NODE_WITH_SLIP || !LACONIC_NODE_WITH_HINGES || !LACONIC_WITH_FRICTION
+#undef LACONIC_NODE_WITH_SLIP
+#define LACONIC_NODE_WITH_SLIP 0
+#endif
 #if LACONIC_NODE_WITH_HINGES
 #include "laconic/articulated.h"
+#if LACONIC_NODE_WITH_SLIP
+#include "laconic/articulated_friction.h"
+#endif
 
 /* What a vehicle with hinges has besides its carriage and wheels: its bodies, start, and commands at the start. */
 typedef struct laconic_node_bodies {
@@ -15,6 +24,10 @@ typedef struct laconic_node_bodies {
     laconic_body body[LACONIC_MAX_BODIES];
     laconic_articulated_start start; /* its place and heading are those of every vehicle */
     laconic_real hinge_rate_rad_per_s[LACONIC_MAX_BODIES], twist[3];
+#if LACONIC_NODE_WITH_SLIP
+    laconic_tree_hinge tree_hinge[LACONIC_MAX_BODIES]; /* read on ground with friction */
+    laconic_tree_wheel tree_wheel[LACONIC_MAX_WHEELS];
+#endif
 } laconic_node_bodies;
 #endif
 
@@ -50,12 +63,17 @@ typedef struct laconic_parameters {
 
 /* The rows of bodies and hinges, in a node that has them. */
 /* clang-format off */
+#if LACONIC_NODE_WITH_SLIP
+#define LACONIC_LOADER_SLIP(X) LACONIC_TREE_HINGE_FIELDS(X, TREE_HINGE) LACONIC_TREE_WHEEL_FIELDS(X, TREE_WHEEL)
+#else
+#define LACONIC_LOADER_SLIP(X)
+#endif
 #if LACONIC_NODE_WITH_HINGES
 #define LACONIC_LOADER_HINGES(X) \
     LACONIC_BODY_FIELDS(X, BODY) LACONIC_WHEEL_BODY_FIELD(X, WHEEL_BODY) LACONIC_BODY_COUNT_FIELD(X, BODY_COUNT) \
     X(HINGE_COMMAND, 113, HINGE_RATE, hinge_rate_rad_per_s, steering_rate_rad_per_s, REAL, FINITE, NEVER) \
     X(HINGE_COMMAND, 115, TWIST, twist, steering_twist, REAL, FINITE, NEVER) \
-    LACONIC_HINGE_START_FIELDS(X, HINGE_START)
+    LACONIC_HINGE_START_FIELDS(X, HINGE_START) LACONIC_LOADER_SLIP(X)
 #else
 #define LACONIC_LOADER_HINGES(X)
 #endif

@@ -86,9 +86,18 @@ typedef struct laconic_node_hinges {
     uint8_t send;        /* chosen frames: LACONIC_NODE_SEND_VELOCITY …                           */
     uint8_t angle_group; /* next HINGE_ANGLE group                                                */
     uint8_t rate_group;  /* next HINGE_RATE group                                                 */
+#if LACONIC_NODE_WITH_SLIP
+    bool slips; /* on ground with friction: `tree_model` and `tree` move it; of model and integrator it has counts,
+                   motions and gains of hinges, and the step's size, which the frames of both use */
+    laconic_tree_model tree_model;
+#endif
     laconic_articulated_model model;
     laconic_articulated_integrator integrator;
     laconic_articulated_state state;
+#if LACONIC_NODE_WITH_SLIP
+    laconic_tree_state tree;                    /* of a vehicle that slips                                       */
+    laconic_real angle_rad[LACONIC_MAX_BODIES]; /* targets of its servos and loops               */
+#endif
     laconic_real twist[3];              /* at the end of the last step                           */
     laconic_articulated_start start;    /* RESET returns to it, with `first` …                   */
     laconic_articulated_input first;    /* … commanded                                           */

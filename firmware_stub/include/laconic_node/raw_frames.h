@@ -18,11 +18,12 @@
 #define LACONIC_RAW_TAKES 0x8FU    /* all of these                          */
 
 /* The same for hinges, H of them; their numbers follow those of the input. Sampled inputs are two: start and end. */
-#define LACONIC_RAW_HINGE_VOLTAGE 1U /* H numbers                             */
-#define LACONIC_RAW_HINGE_TORQUE 2U  /* H numbers                             */
-#define LACONIC_RAW_STEERING_RATE 4U /* H numbers: rates of prescribed hinges */
-#define LACONIC_RAW_TWIST 8U         /* 3 numbers                             */
-#define LACONIC_RAW_HINGE_TAKES 15U  /* all of these                          */
+#define LACONIC_RAW_HINGE_VOLTAGE 1U   /* H numbers                             */
+#define LACONIC_RAW_HINGE_TORQUE 2U    /* H numbers                             */
+#define LACONIC_RAW_STEERING_RATE 4U   /* H numbers: rates of prescribed hinges */
+#define LACONIC_RAW_TWIST 8U           /* 3 numbers                             */
+#define LACONIC_RAW_STEERING_ANGLE 16U /* H numbers: of servos and loops, where wheels may slip */
+#define LACONIC_RAW_HINGE_TAKES 31U    /* all of these                          */
 
 /* Bits of SELECT for the numbers in RAW_OUTPUT, which follow in this order. */
 #define LACONIC_RAW_NU 1U          /* 3; neither these nor the energy in images that play drives alone */
@@ -57,6 +58,7 @@ typedef struct laconic_raw_input {
     uint8_t take_hinges;               /* mask                                */
     int32_t hinge_count;               /* 0: a vehicle without hinges         */
     laconic_articulated_input *hinged; /* two, for the numbers of hinges      */
+    laconic_real *angle_rad;           /* NULL: wheels do not slip            */
 #endif
 } laconic_raw_input;
 
@@ -90,8 +92,8 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
 
 #if LACONIC_NODE_WITH_HINGES
 /* The same for a vehicle with hinges. */
-void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulated_model *model,
-                                const laconic_articulated_state *state, const laconic_input *held);
+void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulated_motion *motion, int32_t wheel_count,
+                                int32_t body_count, const laconic_input *held);
 #endif
 
 /* Copies the next bytes, at most `room`, and fills up with zeros; false iff these were the last. */

@@ -6,7 +6,7 @@
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
  * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
  * With --shared its port is a bus: clients are stations that hear each other. Frames to and from the node itself pass
- * among those that have spoken to it, and before anybody has, to all: a controller hears nothing but its drives. */
+ * among those that have spoken to it, and before anybody has, to all: a controller hears its drives, and XCP. */
 #define _GNU_SOURCE
 #include "laconic_node/integrity.h"
 #include "laconic_secure/gate.h"
@@ -110,8 +110,16 @@ static uint32_t nonce_seed(void) {
     return seed;
 }
 
-static bool is_own(const laconic_node *node, const laconic_frame *frame) {
-    return !frame->extended && frame->id - node->config.id_base < LACONIC_NODE_ID_STRIDE;
+/* XCP's frames pass to all stations: their master is no rig. A node with a key has codes of the rig there instead. */
+static bool is_of_master(const board *port, uint32_t offset) {
+    return LACONIC_NODE_WITH_XCP && !port->guarded &&
+           (offset == LACONIC_WIRE_XCP_COMMAND || offset == LACONIC_WIRE_XCP_RESPONSE);
+}
+
+/* A frame between node and rig. */
+static bool is_own(const board *port, const laconic_frame *frame) {
+    const uint32_t offset = frame->id - port->node.config.id_base;
+    return !frame->extended && offset < LACONIC_NODE_ID_STRIDE && !is_of_master(port, offset);
 }
 
 /* Every frame is fetched as long as somebody has room for it; who has none loses it. */
@@ -129,7 +137,7 @@ static void fetch_frames(board *port) {
     laconic_frame frame;
     while (has_room(port) && laconic_integrity_next_frame(&port->integrity, &port->node, &frame)) {
         if (port->guarded) laconic_gate_sent(&port->gate, &frame);
-        const bool own = is_own(&port->node, &frame);
+        const bool own = is_own(port, &frame);
         for (int k = 0; k < port->stations; k++)
             if (!own || port->station[k].is_rig) give(port, &port->station[k], &frame);
     }
@@ -161,7 +169,7 @@ static void hand_over(board *port, const laconic_frame *frame) {
 
 /* A frame of one station goes to the node and to all other stations; what a rig tells the node, to rigs only. */
 static void take_frame(board *port, station *sender, const laconic_frame *frame) {
-    const bool own = is_own(&port->node, frame);
+    const bool own = is_own(port, frame);
     if (own) make_rig(port, sender);
     for (int k = 0; k < port->stations; k++)
         if (&port->station[k] != sender && (!own || port->station[k].is_rig)) give(port, &port->station[k], frame);

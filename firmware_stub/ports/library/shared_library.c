@@ -3,6 +3,7 @@
 
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
+#include "node_internal.h"
 
 uint32_t laconic_library_node_size(void) { return (uint32_t)sizeof(laconic_node); }
 
@@ -28,7 +29,7 @@ void laconic_library_inspect(const laconic_node *node, laconic_library_view *vie
 #if LACONIC_NODE_WITH_HINGES
 static void motion_with_hinges(const laconic_node *node, laconic_library_motion *motion) {
     laconic_articulated_motion now;
-    laconic_articulated_motion_of(&now, &node->hinges.model, &node->hinges.state);
+    laconic_node_motion_of(&now, node);
     const laconic_library_motion seen = {
         .x_m = (double)now.x_m,
         .y_m = (double)now.y_m,
@@ -43,7 +44,7 @@ static void motion_with_hinges(const laconic_node *node, laconic_library_motion 
 static void axis_with_hinges(const laconic_node *node, int32_t axis, laconic_real *angle, laconic_real *speed) {
     const int32_t hinge = axis - node->hinges.model.wheel_count;
     laconic_articulated_motion now;
-    laconic_articulated_motion_of(&now, &node->hinges.model, &node->hinges.state);
+    laconic_node_motion_of(&now, node);
     *angle = hinge < 0 ? now.wheel_angle_rad[axis] : now.hinge_angle_rad[hinge];
     *speed = hinge < 0 ? now.wheel_speed_rad_per_s[axis] : now.hinge_rate_rad_per_s[hinge];
 }

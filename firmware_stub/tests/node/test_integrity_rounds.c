@@ -29,6 +29,8 @@ static uint32_t slices_of_the_model(void) {
                             sizeof on.node.plant.friction,
                             sizeof on.node.sensors.settings,
                             sizeof on.node.hinges.model,
+                            sizeof on.node.hinges.slips,
+                            sizeof on.node.hinges.tree_model,
                             sizeof on.node.hinges.integrator,
                             sizeof on.node.hinges.start,
                             sizeof on.node.hinges.first,

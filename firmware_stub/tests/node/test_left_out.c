@@ -19,9 +19,10 @@ static uint8_t status_of(int field, uint8_t item) {
     return loader.status;
 }
 
-/* Of laconic.dbc's table: motors, wheels' own values, friction and currents, a slope, drives, sensors. */
+/* Of laconic.dbc's table: motors, wheels' own values, friction and currents, a slope, drives, sensors, hinges whose
+ * wheels slip. */
 static const uint8_t first_and_last[][2] = {
-    {37, 42}, {43, 47}, {48, 53}, {56, 62}, {64, 79}, {80, 95},
+    {37, 42}, {43, 47}, {48, 53}, {56, 62}, {64, 79}, {80, 95}, {121, 137}, {139, 139},
 #if !LACONIC_WITH_SLOPE
     {54, 55},
 #endif

@@ -80,13 +80,68 @@ static void what_a_vehicle_with_hinges_does_not_have_is_refused(void) {
     }
 }
 
-static void ground_on_which_wheels_of_hinges_slip_is_refused_by_its_field(void) {
-    const parameter friction = NUMBER(GROUND_FRICTION_COEFFICIENT, 0, 0.8);
+/* On ground with friction, with a servo on the hinge. */
+static void begin_slipping(void) {
+    const parameter more[] = {NUMBER(GROUND_FRICTION_COEFFICIENT, 0, 0.3),
+                              INTEGER(BODY_HINGE, 1, LACONIC_HINGE_FREE),
+                              NUMBER(SERVO_GAIN, 1, 60),
+                              NUMBER(SERVO_DAMPING, 1, 2),
+                              NUMBER(SERVO_LIMIT, 1, 3),
+                              NUMBER(HINGE_DRY_FRICTION, 1, 0.01),
+                              INTEGER(HINGE_HITCH, 1, 1),
+                              NUMBER(SCRUB_RADIUS, 3, 0.01),
+                              NUMBER(START_WHEEL_SPEED, 1, 5),
+                              NUMBER(START_HINGE_ANGLE, 1, 0.2)};
     begin_tricycle(&prescribed);
-    TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&friction));
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_FRICTION_WITH_HINGES, commit());
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_FIELD_GROUND_FRICTION_COEFFICIENT, data[4]);
-    TEST_ASSERT_FALSE(node.hinges.here);
+    for (size_t k = 0; k < sizeof more / sizeof more[0]; k++) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&more[k]));
+}
+
+static void wheels_of_hinges_slip_as_in_the_core_under_voltages_and_angles(void) {
+    laconic_tree_input held = {0};
+    begin_slipping();
+    TEST_ASSERT_EQUAL_UINT8(0, commit());
+    TEST_ASSERT_TRUE(node.hinges.here && node.hinges.slips);
+    laconic_tree_state wanted = node.hinges.tree;
+    TEST_ASSERT_TRUE(wanted.wheel_speed_rad_per_s[0] == 5);
+    bench_start_lockstep();
+    held.hinge_angle_rad[0] = (laconic_real)0.2; /* of the start, until the first command */
+    for (int k = 0; k < 3; k++) held.hinged.base.voltage_V[k] = 5;
+    TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_tree_step(&node.hinges.tree_model, STEP_S, &wanted, &held, NULL));
+    bench_step(1);
+    TEST_ASSERT_EQUAL_MEMORY(&wanted, &node.hinges.tree, sizeof wanted);
+    for (int k = 0; k < 3; k++) held.hinged.base.voltage_V[k] = 4;
+    held.hinge_angle_rad[0] = 800 / (laconic_real)LACONIC_WIRE_STEERING_HINGE_RATE_1_PER_UNIT;
+    TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_tree_step(&node.hinges.tree_model, STEP_S, &wanted, &held, NULL));
+    bench_voltage(0, 4 * VOLT, 0);
+    steer(0, 800, 0, 0, true);
+    TEST_ASSERT_EQUAL_MEMORY(&wanted, &node.hinges.tree, sizeof wanted);
+    TEST_ASSERT_TRUE(motion().x_m != 0);
+}
+
+static void what_ground_with_friction_lacks_is_refused_by_its_field(void) {
+    const parameter method = INTEGER(METHOD, 0, 1), coordination = INTEGER(BODY_HINGE, 1, LACONIC_HINGE_COORDINATED);
+    const parameter step = NUMBER(STEP, 0, 0), drives = INTEGER(DRIVE_PROTOCOL, 0, 1);
+    const parameter *wrong[] = {&method, &coordination, &step, &drives};
+    const uint8_t statuses[] = {LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_COORDINATED_SLIPS, LACONIC_NOT_POSITIVE,
+                                LACONIC_WIRE_STATUS_NOT_SUPPORTED};
+    for (size_t k = 0; k < sizeof statuses; k++) {
+        begin_slipping();
+        TEST_ASSERT_EQUAL_UINT8(0, send_parameter(wrong[k]));
+        TEST_ASSERT_EQUAL_UINT8(statuses[k], commit());
+        TEST_ASSERT_EQUAL_UINT8(wrong[k]->field, data[4]);
+        TEST_ASSERT_FALSE(node.hinges.here);
+    }
+}
+
+static void a_vehicle_that_slips_has_no_twist_and_no_samples_and_one_that_rolls_no_angles(void) {
+    begin_slipping();
+    TEST_ASSERT_EQUAL_UINT8(0, commit());
+    TEST_ASSERT_EQUAL_UINT8(0, select_bits(0, 0, 0, 0, LACONIC_RAW_STEERING_ANGLE));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, select_bits(0, 0, 0, 0, LACONIC_RAW_TWIST));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, select_bits(0, 0, LACONIC_RAW_SAMPLED, 0, 0));
+    load_tricycle(&prescribed);
+    TEST_ASSERT_FALSE(node.hinges.slips);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, select_bits(0, 0, 0, 0, LACONIC_RAW_STEERING_ANGLE));
 }
 
 static void a_refused_vehicle_leaves_the_one_before(void) {
@@ -334,7 +389,9 @@ int main(void) {
     RUN_TEST(a_body_without_a_required_number_is_refused_by_field_and_item);
     RUN_TEST(a_kind_of_hinge_beyond_one_byte_is_refused_and_not_cut);
     RUN_TEST(what_a_vehicle_with_hinges_does_not_have_is_refused);
-    RUN_TEST(ground_on_which_wheels_of_hinges_slip_is_refused_by_its_field);
+    RUN_TEST(wheels_of_hinges_slip_as_in_the_core_under_voltages_and_angles);
+    RUN_TEST(what_ground_with_friction_lacks_is_refused_by_its_field);
+    RUN_TEST(a_vehicle_that_slips_has_no_twist_and_no_samples_and_one_that_rolls_no_angles);
     RUN_TEST(a_refused_vehicle_leaves_the_one_before);
     RUN_TEST(voltages_and_rates_make_the_step_of_the_core);
     RUN_TEST(a_command_is_reached_once_and_then_held);

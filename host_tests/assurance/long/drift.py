@@ -20,9 +20,8 @@ from laconic.core import Vehicle
 from laconic.errors import Refused, ResultFails
 from laconic.scene import Scene, read_scene
 from laconic.scene.methods import EXPLICIT
-from laconic.tools.report.collocation import DIGITS, exact, true_states
+from laconic.tools.report.collocation import BITS, DIGITS, exact, true_states
 from laconic.tools.report.drift import free
-from laconic.tools.report.nodes import BITS
 from laconic.tools.report.stability import strengthened
 from laconic.tools.verify.exact.exact_model import ExactModel, Vector, cross, dot, exact_model, numbers_of
 from laconic.tools.verify.exact.exact_steps import forcing_of, rate

@@ -11,8 +11,8 @@ from assurance.common import Clock
 from laconic.errors import BadInput, LaconicError
 from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.tools.enclosure.readings import check_enclosable
-from laconic.tools.enclosure.scene_case import verify_scene_enclosed
-from laconic.tools.verify.enclosed_result import EnclosedResult, bound_text
+from laconic.tools.enclosure.study import verify_scene_enclosed
+from laconic.tools.verify.trajectories import EnclosedResult, bound_text
 
 NARROW = 1e-12
 STEPS_S = ("0.001", "0.01")

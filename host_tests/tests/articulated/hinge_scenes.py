@@ -10,6 +10,7 @@ from laconic.scene.scene_tables import scene_tables
 
 HINGED = ("f1tenth", "tricycle_agv", "frc_swerve_mk4i", "mir_like", "pr2_base", "tugger_train", "wheel_loader",
           "wheelchair")
+SLIDING = ("swerve_module_off", "trailer_on_ice")  # whose ground has friction
 WHEEL = {"kind": "fixed", "axle_deg": -90.0}
 CASTER: dict[str, Any] = {"x_m": 0.3, "y_m": 0.0, "trail_m": 0.05, "radius_m": 0.04}
 

@@ -74,8 +74,21 @@ def test_every_output_of_a_scene_with_hinges_can_be_asked_for(tmp_path: Path) ->
     assert np.abs(np.gradient(x, run_.time_s) - speed)[5:-5].max() < 0.01
     acceleration = run_.columns_of("acceleration_body_m_per_s2")[:, 0]
     assert np.abs(np.gradient(speed, run_.time_s) - acceleration)[5:-5].max() < 0.01
-    with pytest.raises(BadInput, match=r"there is no signal 'slip_along"):
-        laconic.simulate(scene, ["slip_along_m_per_s"])
+    for signal in ("slip_along_m_per_s", "wheel_load_N", "hinge_stop_Nm[front]", "servo_work_J"):
+        with pytest.raises(BadInput, match=r"wheels may slip; give ground.friction_coefficient, or take"):
+            laconic.simulate(scene, [signal])
+
+
+@pytest.mark.parametrize("wheel", [1, 2])
+def test_the_warning_of_slip_names_the_wheel_that_lacks_most(wheel: int, tmp_path: Path,
+                                                             capsys: pytest.CaptureFixture[str]) -> None:
+    tables = two_wheels(friction_coefficient=0.05, motor_gain_Nm_per_V=0.5, motor_damping_Nms=0.5, caster=[CASTER])
+    tables |= {"initial": {}, "input": held(**{f"voltage_V__{wheel}": 12.0})}
+    scene = tmp_path / "robot.toml"
+    scene.write_text("\n".join(lines_of(tables, {})), encoding="utf-8")
+    _, out, err = told(["simulate", str(scene), "--json"], capsys)
+    assert f"where wheel {wheel} would slip, by" in err
+    assert json.loads(out)["no_slip"]["wheel"] == wheel
 
 
 @pytest.mark.parametrize("method", ["auto", "rk4", "circle", "moebius-4"])

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hinge_scenes import CASTER, HINGED, held, scene_with, tables_of, two_wheels
+from hinge_scenes import CASTER, HINGED, SLIDING, held, scene_with, tables_of, two_wheels
 
 from laconic import Trajectory, build_scene, read_scene, simulate
 from laconic.base.paths import scene_names
@@ -29,7 +29,7 @@ def at(run: Trajectory, time_s: float, *names: str) -> tuple[float, ...]:
 
 
 def test_the_project_has_these_scenes_with_hinges() -> None:
-    assert sorted({*scene_names()} - {*rigid_scene_names()}) == sorted(HINGED)
+    assert sorted({*scene_names()} - {*rigid_scene_names()}) == sorted([*HINGED, *SLIDING])
 
 
 @pytest.mark.parametrize("name", HINGED)

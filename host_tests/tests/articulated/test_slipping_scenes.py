@@ -168,12 +168,23 @@ def test_a_picture_shows_slip_loads_and_energy(tmp_path: Path) -> None:
     (tricycle(run={"duration_s": 0.1, "step_s": 1e-3, "method": "circle"}), ("run.method", "auto")),
     (tricycle(outputs={"signals": ["no_slip_margin_N"]}), ("no_slip_margin_N", "friction_coefficient")),
     (tricycle() | {"ground": {"slope_rad": 0.0}}, ("wheel[3].", "ground.friction_coefficient")),
-    (carriage(caster=[{**CASTER, "wheel_inertia_kgm2": 1e-4}]) | {"ground": GROUND}, ("caster[1]", "inertia")),
+    (tricycle(outputs={"signals": ["hinge_force_along_N"]}), ("hinge_force_along_N", "ideal ground")),
+    (carriage(caster=[{**CASTER, "wheel_inertia_kgm2": 1e-4}]) | {"ground": GROUND}, ("caster[1]", "mass_kg")),
     (carriage(caster=[CASTER]) | {"ground": GROUND}, ("caster[1].wheel_inertia_kgm2", "above 0")),
     (carriage(caster=[{**HEAVY_CASTER, "servo_gain_Nm_per_rad": 1.0}]) | {"ground": GROUND}, ("caster[1].servo",)),
     (carriage(caster=[{**HEAVY_CASTER, "dry_friction_Nm": 1.0}]), ("caster[1].dry_friction_Nm", "ground.friction"))])
 def test_what_contradicts_is_one_line_with_field_and_remedy(tables: dict[str, Any], words: tuple[str, ...]) -> None:
     fails(tables, *words)
+
+
+def test_a_hinge_without_inertia_is_not_sent_to_a_trail_where_its_wheel_may_slip() -> None:
+    bare = carriage(caster=[{**CASTER, "wheel_inertia_kgm2": 1e-4}]) | {"ground": GROUND}
+    with pytest.raises(Refused) as caught:
+        ran(bare)
+    assert "trail" not in str(caught.value) and "yaw_inertia_kgm2" in str(caught.value)
+    for key in ("mass_kg", "yaw_inertia_kgm2"):  # each of them is a remedy
+        bare["vehicle"]["caster"][0] = {**CASTER, "wheel_inertia_kgm2": 1e-4, key: 0.1}
+        assert ran(bare | {"run": {"duration_s": 0.01, "step_s": 0.005}}).refused is None
 
 
 def test_wheels_without_hinges_refuse_scrub_and_creep() -> None:

@@ -18,12 +18,14 @@ from laconic.ros2.messages import new
 from laconic.ros2.session import write_record
 from laconic.scene import build_scene, read_scene
 from laconic.scene.base import BaseTable
+from laconic.scene.ground import slips
 from laconic.scene.hinges import rigid_scene_names
 from laconic.scene.scene_tables import scene_tables
 from laconic.simulation.articulated import kept_signals_with_hinges
 from ros2_support import Rig, last, rig_of
 
-HINGED = sorted({*laconic.scene_names()} - {*rigid_scene_names()})
+HINGED = sorted(name for name in {*laconic.scene_names()} - {*rigid_scene_names()}
+                if not slips(laconic.read_scene(name).vehicle))
 COMMANDS = {"f1tenth": (1.0, 0.0, 0.8), "tugger_train": (1.0, 0.0, 0.3), "tricycle_agv": (0.5, 0.0, 0.3),
             "wheelchair": (0.5, 0.0, 0.4), "mir_like": (0.4, 0.0, -0.3), "wheel_loader": (1.0, 0.0, 0.2),
             "frc_swerve_mk4i": (0.3, 1.0, 0.5), "pr2_base": (0.1, -0.3, 0.4)}

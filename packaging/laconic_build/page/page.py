@@ -11,7 +11,7 @@ from pathlib import Path
 from laconic_build.page.bundle import bundle, read, without_types
 from laconic_build.page.scenes import scenes_in
 
-MOST_BYTES = 400_000
+MOST_BYTES = 445_000  # 400,000 and what slip on hinges costs: 27 kB of compressed core, 36 kB in base64, and its script
 
 
 class TooLarge(Exception):

@@ -51,7 +51,7 @@ STATUSES = {
     "COORDINATED_TOO_FEW": "too few wheels hold the carriage to the twist",
     "MASSLESS_HINGE": "a hinge turns without inertia",
     "STEERED_TOO_OFTEN": "freely steered wheels hold the carriage",
-    "FRICTION_WITH_HINGES": "friction does not act on vehicles with hinges",
+    "FRICTION_WITH_HINGES": "this build has no friction on vehicles with hinges",
     "TWIST_ZERO": "the twist gives a wheel no direction",
     "TWIST_JUMPS": "the twist turns a wheel too far at once",
     "TWIST_AGAINST_WHEELS": "the twist makes fixed wheels slide",

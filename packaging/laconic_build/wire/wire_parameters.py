@@ -24,11 +24,13 @@ NONE, WHEEL, SUPPORT, COMPONENT = "0", "wheel", "support", "1, 2, 3"
 NOTES = {"WHEEL_KIND": ": 1 rollers (omni, mecanum), 2 fixed", "WHEEL_LOCKED": ": 0 or 1",
          "DRIVEN": ": 0 or 1; 1 where it is not sent", "MOTOR_CIRCUIT": ": 0 driven, 1 open, 2 shorted",
          "METHOD": ": see below"}
-HINGE_LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "articulated.h"
-HINGE_ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+), +\w+, +(\w+),[\s\\]+\w+,[\s\\]+(\w+)\)")
-ONLY_REFUSED = ("HINGE_VOLTAGE", "HINGE_TORQUE", "HINGE_ACCELERATION", "TWIST_RATE")
+HINGE_LISTS = {name: SOURCE_DIR / "core_c" / "include" / "laconic" / f"{name}.h"
+               for name in ("articulated", "articulated_friction")}
+HINGE_ROW = re.compile(r"X\(of, *\d+, *(\w+), *(\w+), *\w+, *(\w+),[\s\\]*\w+,[\s\\]*(\w+)\)")
+ONLY_REFUSED = ("HINGE_VOLTAGE", "HINGE_TORQUE", "HINGE_ACCELERATION", "TWIST_RATE", "HINGE_ANGLE")
 """Inputs, which are only named in refusals."""
-HINGE_ITEMS = {"WHEEL_BODY": WHEEL, "BODY_COUNT": NONE, "START_VELOCITY": "1, 2", "START_YAW_RATE": NONE,
+HINGE_ITEMS = {**dict.fromkeys(("WHEEL_LOAD", "SCRUB_RADIUS", "SCRUB_FADE", "CREEP"), WHEEL),
+               "WHEEL_BODY": WHEEL, "BODY_COUNT": NONE, "START_VELOCITY": "1, 2", "START_YAW_RATE": NONE,
                "TWIST": COMPONENT}
 HINGE_NOTES = {"BODY_PARENT": "a body before it; 0: the carriage", "BODY_COUNT": "bodies on hinges; 0: none",
                "BODY_HINGE": "1 free, 2 motor, 3 prescribed, 4 coordinated", "WHEEL_BODY": "its body; 0: the carriage",
@@ -66,9 +68,12 @@ def taken() -> dict[str, tuple[str, str, str, str]]:
 def hinge_parameters() -> dict[str, tuple[str, str, str, str]]:
     """Field in the DBC → meaning, unit, item, when it is required."""
     found = {}
-    for identifier, member, kind, need in HINGE_ROW.findall(HINGE_LIST.read_text(encoding="utf-8")):
+    rows = [(name, *row) for name, path in HINGE_LISTS.items()
+            for row in HINGE_ROW.findall(path.read_text(encoding="utf-8"))]
+    for name, identifier, member, kind, need in rows:
         if identifier not in ONLY_REFUSED:
-            key = f"hinges: {HINGE_NOTES.get(identifier, 'body.' + member if need == 'ALWAYS' else member)}"
+            where = "hinges" if name == "articulated" else "hinges, ground with friction"
+            key = f"{where}: {HINGE_NOTES.get(identifier, 'body.' + member if need == 'ALWAYS' else member)}"
             required = "each body" if need == "ALWAYS" else ""
             found[identifier] = (key, unit_of(member, kind), HINGE_ITEMS.get(identifier, "body"), required)
     return found

@@ -18,21 +18,26 @@ import numpy as np
 from laconic.batch.given import core_of, kinds_of, kinds_of_lanes, thread_count
 from laconic.batch.population import items_of, zeros
 from laconic.core.articulated import ArticulatedVehicle
-from laconic.core.articulated_input import by_signal, input_slots, row_length
+from laconic.core.articulated_input import by_signal
 from laconic.core.copies import OwnMemory
 from laconic.core.given import c_object, number, shown, step_count, whole_number
 from laconic.core.given_array import fill
+from laconic.core.slipping import SlippingVehicle
 from laconic.errors import BadInput, Refused
 
 MOST_AT_ONCE = 2**20  # steps of all lanes in one call, about a second; Ctrl-C is heard between calls
 OF_WHEELS = ("voltage_V", "axle_torque_Nm")
+IDEAL, TREES = ("states", "inputs"), ("tree_states", "tree_inputs")
+"""Members of laconic_articulated_batch by the ground."""
+GROUND = ("ideal ground", "ground with friction")
 
 
 class ArticulatedBatch(OwnMemory):
     """Vehicles with hinges side by side, each with the bits and the refusals of `ArticulatedPlant.run` alone.
 
     `vehicles`: one for all lanes, or several kinds; `kind_of` has for each lane the index of its kind, from 0, and
-    without it there is one lane for each. All lanes begin at rest at the origin without input. Raises BadInput for
+    without it there is one lane for each. All are on ideal ground, or all on ground with friction (SlippingVehicle),
+    whose method is auto. All lanes begin at rest at the origin without input. Raises BadInput for
     what does not fit, and Refused as `ArticulatedVehicle.plant` does; both name the vehicle by its number from 1.
     """
 
@@ -44,10 +49,12 @@ class ArticulatedBatch(OwnMemory):
         self.vehicles = kinds_of(vehicles)
         core = self.core = core_of(self.vehicles, ArticulatedVehicle, "Batch")
         self._kind_of = kinds_of_lanes(len(self.vehicles), lanes, kind_of)
+        self._slips = _slip(self.vehicles)
+        self._struct = "laconic_tree" if self._slips else "laconic_articulated"
         self.lane_count, self.step_s = len(self._kind_of), number("step_s", step_s)
         self.method, rest = method, self._prepared(method)
-        self._states = zeros(core, "laconic_articulated_state", self.lane_count)
-        self._inputs = np.zeros((self.lane_count, row_length(core)), core.dtype)
+        self._states = zeros(core, f"{self._struct}_state", self.lane_count)
+        self._inputs = np.zeros((self.lane_count, len(self.vehicles[0].input_row())), core.dtype)
         self._motions = zeros(core, "laconic_articulated_motion", self.lane_count)
         self._why = core.ffi.new("laconic_refusal[]", self.lane_count)
         self.status, self.missed = np.zeros(self.lane_count, np.int32), np.zeros(self.lane_count, np.uint64)
@@ -63,20 +70,25 @@ class ArticulatedBatch(OwnMemory):
                 plant = vehicle.plant(method, self.step_s)
             except Refused as refused:
                 raise _named(f"vehicles[{item + 1}]", refused) from None
-            self._kinds[item].model, self._kinds[item].integrator = vehicle.model, plant.integrator[0]
+            except BadInput as wrong:
+                raise BadInput(f"vehicles[{item + 1}]: {wrong}") from None
+            if self._slips:
+                self._kinds[item].tree, self._kinds[item].tree_step_s = vehicle.model, self.step_s
+            else:
+                self._kinds[item].model, self._kinds[item].integrator = vehicle.model, plant.integrator[0]
             rest.append(plant.c)
         return rest
 
     def _place(self) -> None:
         core, ffi = self.core, self.core.ffi
-        self._items = items_of(core, "laconic_articulated_state", self._states)
-        given = ffi.from_buffer("laconic_articulated_input[]", self._inputs)
+        self._items = items_of(core, f"{self._struct}_state", self._states)
+        given = ffi.from_buffer(f"{self._struct}_input[]", self._inputs)
         self._pointers = (ffi.from_buffer("int32_t[]", self._kind_of), given,
                           ffi.from_buffer("int32_t[]", self.status), ffi.from_buffer("uint64_t[]", self.missed))
         kind_of, inputs, status, missed = self._pointers
         self.c = ffi.new("laconic_articulated_batch *", {
-            "kinds": self._kinds, "kind_of": kind_of, "states": self._items, "inputs": inputs, "why": self._why,
-            "status": status, "missed": missed})
+            "kinds": self._kinds, "kind_of": kind_of, "why": self._why, "status": status, "missed": missed,
+            **dict(zip(TREES if self._slips else IDEAL, (self._items, inputs), strict=True))})
         self.status.flags.writeable = self.missed.flags.writeable = False
 
     # ---- copies
@@ -101,8 +113,7 @@ class ArticulatedBatch(OwnMemory):
 
         A number that a lane's vehicle does not read has no effect."""
         most = max(self.vehicles, key=lambda vehicle: vehicle.body_count)
-        names = most.names if isinstance(signal, str) and "[" not in signal else self.vehicles[0].names
-        slots = input_slots(self.core, names, signal)
+        slots = (most if isinstance(signal, str) and "[" not in signal else self.vehicles[0]).slots(signal)
         wheels = max(vehicle.wheel_count for vehicle in self.vehicles)
         name, _, inside = signal.partition("[")
         if name in OF_WHEELS and inside and int(inside.rstrip("]")) > wheels:
@@ -119,11 +130,11 @@ class ArticulatedBatch(OwnMemory):
 
     def load(self, lane: int, state: Any) -> None:
         """Gives a lane a state such as `ArticulatedPlant.save()` has, of a vehicle like the lane's."""
-        self._items[self._lane(lane)] = c_object(self.core, "articulated_state", state)[0]
+        self._items[self._lane(lane)] = c_object(self.core, f"{self._struct[8:]}_state", state)[0]
 
     def state(self, lane: int) -> Any:
         """A copy of a lane's state, all of it: `ArticulatedPlant.restore` takes it."""
-        return self.core.ffi.new("laconic_articulated_state *", self._items[self._lane(lane)])
+        return self.core.ffi.new(f"{self._struct}_state *", self._items[self._lane(lane)])
 
     def run(self, steps: int = 1, threads: int = 1) -> int:
         """Steps of all lanes with the inputs held, on so many threads; the bits do not depend on their number.
@@ -158,6 +169,17 @@ class ArticulatedBatch(OwnMemory):
         self.core.lib.laconic_articulated_batch_observe(self.c, 0, self.lane_count, found)
         return self._motions.copy()
 
+    @property
+    def outputs(self) -> np.ndarray:
+        """All outputs of all lanes, which are on ground with friction: the same with the names of SlippingOutputs."""
+        if not self._slips:
+            raise BadInput("outputs: are of ground with friction, and this batch is on ideal ground; read motion, or "
+                           "give vehicles with ground.friction_coefficient (laconic.SlippingVehicle)")
+        found = zeros(self.core, "laconic_tree_outputs", self.lane_count)
+        self.core.lib.laconic_articulated_batch_outputs(self.c, 0, self.lane_count,
+                                                        items_of(self.core, "laconic_tree_outputs", found))
+        return found
+
     def refusal(self, lane: int) -> Refused | None:
         """Why a lane's last run was refused, as an exception that names the lane; None where it was not."""
         if self.status[self._lane(lane)] == self.core.lib.LACONIC_OK:
@@ -170,6 +192,16 @@ class ArticulatedBatch(OwnMemory):
         if not 0 <= found < self.lane_count:
             raise BadInput(f"lane: there is no {shown(lane)}; this batch has the lanes 0 to {self.lane_count - 1}")
         return found
+
+
+def _slip(vehicles: Sequence[ArticulatedVehicle]) -> bool:
+    """Whether these are on ground with friction; BadInput where some are and some are not."""
+    slip = [isinstance(vehicle, SlippingVehicle) for vehicle in vehicles]
+    for item, each in enumerate(slip, 1):
+        if each != slip[0]:
+            raise BadInput(f"vehicles[{item}]: is on {GROUND[each]}, and the first on {GROUND[slip[0]]}; make one "
+                           "batch for each ground")
+    return slip[0]
 
 
 def _named(who: str, refused: Refused) -> Refused:

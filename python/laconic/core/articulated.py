@@ -212,7 +212,11 @@ class ArticulatedVehicle(OwnMemory):
 
     def slot(self, signal: str) -> int:
         """Where a signal such as voltage_V[2] or hinge_torque_Nm[fork] stands in a row of input numbers."""
-        return input_slots(self.core, self.names, signal).start
+        return self.slots(signal).start
+
+    def slots(self, signal: str) -> range:
+        """The same of a signal with several numbers, such as voltage_V."""
+        return input_slots(self.core, self.names, signal)
 
     def plant(self, method: str = "auto", step_s: float = 1e-3, *,
               velocity_m_per_s: Sequence[float] = (0.0, 0.0), yaw_rate_rad_per_s: float = 0.0, x_m: float = 0.0,

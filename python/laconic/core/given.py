@@ -15,7 +15,7 @@ from laconic.errors import shown as shown
 if TYPE_CHECKING:
     from laconic.core import Core
 
-MAKERS = {"articulated_state": "plant.save()",
+MAKERS = {"articulated_state": "plant.save()", "tree_state": "plant.save()",
           "input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})", "model": "core.prepare(vehicle)",
           "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()",
           "estimate": "estimate.save()",

@@ -147,16 +147,13 @@ class SlippingVehicle(ArticulatedVehicle):
         for signal, each in targets.items():
             if signal != TARGET and TARGET in targets:
                 raise BadInput(f"{signal}: is given besides {TARGET}; keep one of them")
-            slots = self._slots(signal)
+            slots = self.slots(signal)
             many = [each] if isinstance(each, int | float | np.number) else each
             row[slots.start : slots.stop] = finite_numbers(str(signal), many, len(slots))
         return row
 
-    def slot(self, signal: str) -> int:
-        """Where a signal such as voltage_V[2] or steering_angle_rad[fork] stands in a row of input numbers."""
-        return self._slots(signal).start
-
-    def _slots(self, signal: str) -> range:
+    def slots(self, signal: str) -> range:
+        """As of ArticulatedVehicle, and steering_angle_rad or steering_angle_rad[fork]."""
         name, bracket, inside = str(signal).partition("[")
         if name != TARGET:
             return input_slots(self.core, self.names, signal)

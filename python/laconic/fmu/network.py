@@ -17,8 +17,7 @@ import can
 from laconic.base.outputs import whole_file
 from laconic.base.paths import SOURCE_DIR, as_path, built
 from laconic.can.play.node_vehicle import remedy
-from laconic.can.play.parameters import drive_parameters
-from laconic.can.play.settings import DriveSettings, drive_settings
+from laconic.can.play.settings import DriveSettings, drive_parameters, drive_settings
 from laconic.can.play.vehicle import check_playable, played
 from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
 from laconic.can.rig.client import NodeClient

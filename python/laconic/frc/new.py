@@ -260,23 +260,25 @@ def _head(robot: Robot, title: str) -> list[str]:
             "--new; change what you know better.", f"name = {json.dumps(robot.name or title, ensure_ascii=False)}", ""]
 
 
-def _yaw_inertia(robot: Robot, assumed: list[str]) -> float:
+def _yaw_inertia(robot: Robot, assumed: list[str], of_modules: float = 0.0) -> float:
+    """Of the block less that of its swerve modules, which turn by themselves; the value that the scene gets."""
     longest, widest = robot.bumpers_m
-    found = robot.mass_kg * (longest**2 + widest**2) / 12.0
-    assumed.append(f"yaw inertia {found:.3g} kg m²: an even block as large as the bumpers, {longest:.3g} m × "
-                   f"{widest:.3g} m, of {robot.mass_kg:.4g} kg")
+    found = float(f"{robot.mass_kg * (longest**2 + widest**2) / 12.0 - of_modules:.4g}")
+    assumed.append(f"yaw inertia {found:g} kg m²: an even block as large as the bumpers, {longest:.3g} m × "
+                   f"{widest:.3g} m, of {robot.mass_kg:.4g} kg"
+                   + (f", less {of_modules:g} kg m² of the modules" if of_modules else ""))
     return found
 
 
 def _vehicle(robot: Robot, yaw: float, radius: float, assumed: list[str], friction: float | None) -> list[str]:
-    wheel = 0.5 * WHEEL_KG * radius**2
-    assumed += [f"inertia of a wheel {wheel:.2g} kg m²: an even disc of {WHEEL_KG:g} kg",
+    wheel = float(f"{0.5 * WHEEL_KG * radius**2:.3g}")
+    assumed += [f"inertia of a wheel {wheel:g} kg m²: an even disc of {WHEEL_KG:g} kg",
                 f"inertia of a motor's rotor {ROTOR_KGM2:g} kg m²"]
     block = "assumption: an even block as large as the bumpers"
     lines = ["[vehicle]", entry("mass_kg", robot.mass_kg, "with bumpers and battery"),
              entry("yaw_inertia_kgm2", yaw, block + (", less the modules" if robot.kind == "swerve" else "")),
              entry("wheel_radius_m", radius),
-             entry("wheel_inertia_kgm2", float(f"{wheel:.3g}"), f"assumption: an even disc of {WHEEL_KG:g} kg")]
+             entry("wheel_inertia_kgm2", wheel, f"assumption: an even disc of {WHEEL_KG:g} kg")]
     if friction is not None:
         assumed.append(f"centre of mass {COM_Z_M:g} m above the ground, in the middle")
         lines.append(entry("com_z_m", COM_Z_M, "assumption"))
@@ -334,7 +336,7 @@ def _swerve(robot: Robot) -> New:
     inertia = module.inertia_kgm2 if module else 0.03
     motor, turner = motor_of(robot.motor), motor_of(robot.steering_motor or robot.motor, "steering motor")
     friction = None if robot.is_ideal else robot.friction or FRICTION
-    yaw = _yaw_inertia(robot, assumed) - 4 * inertia
+    yaw = _yaw_inertia(robot, assumed, 4 * inertia)
     if yaw <= 0.0:
         raise BadInput("bumpers: a block of this size and mass has less yaw inertia than its four modules; correct "
                        "mass and bumpers")

@@ -18,10 +18,17 @@ from laconic.base.paths import as_path
 from laconic.core.given import shown
 from laconic.errors import BadInput
 from laconic.pictures.articulated import is_drawn, plot_hinges, plot_slipping, plot_vehicle_path, slipping_panels
-from laconic.pictures.curve_style import wrapped
-from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_beside_yaw_rate, plot_curves, plot_rows
-from laconic.pictures.method_style import style_of
-from laconic.pictures.sensor_panels import plot_sensors, sensor_panels
+from laconic.pictures.curve_style import style_of, wrapped
+from laconic.pictures.curves import (
+    MOST_CURVES,
+    head,
+    keep_scale,
+    plot_beside_yaw_rate,
+    plot_curves,
+    plot_rows,
+    plot_sensors,
+    sensor_panels,
+)
 
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory

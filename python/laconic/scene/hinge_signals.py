@@ -120,6 +120,7 @@ def check_hinge_signal(table: Table, key: str, signal: str, known: Mapping[str, 
     if name in (ANGLE, RATE) and item[:-1] in coordinated:
         table.fail(key, f"{signal}: {item[:-1]} is coordinated, and all such wheels are steered together; give one of "
                    f"{CURVATURE}, {ANGLE} (without a name) and {TWIST}, or make it \"prescribed\"")
+    _check_ground(table, key, name, signal, known)
     if name in PER_WHEEL:
         table.fail(key, no_such_wheel(signal, name, sum(1 for each in known.values() if each == name)))
     if name in HINGE_INPUTS and name not in HINGE_OUTPUTS:
@@ -130,12 +131,28 @@ def check_hinge_signal(table: Table, key: str, signal: str, known: Mapping[str, 
     table.fail(key, f"there is no signal {shown(signal)}; {nearest_of(signal, known)}")
 
 
+def _check_ground(table: Table, key: str, name: str, signal: str, known: Mapping[str, str]) -> None:
+    """Fails for an output that only the other ground has: with friction, or ideal."""
+    on_friction = {*SLIPPING_OUTPUTS, *SLIPPING_ALONE, *FRICTION_PER_WHEEL, *OF_GROUND, *BOOK, *OF_SUPPLY}
+    there = set(known.values())
+    if name in there:
+        return
+    if name in on_friction and not there & set(FRICTION_PER_WHEEL):
+        instead = ("; `laconic simulate` prints the loads at rest if vehicle.friction_coefficient is given"
+                   if name == "wheel_load_N" else "")
+        table.fail(key, f"{shown(signal)} is an output of vehicles whose wheels may slip; give "
+                   f"ground.friction_coefficient, or take the signal out{instead}")
+    if name in NOT_SLIPPING and there & set(FRICTION_PER_WHEEL):
+        table.fail(key, f"{shown(signal)} is an output of ideal ground, and here wheels may slip; take it out, or take "
+                   "out ground.friction_coefficient")
+
+
 def read_hinge_signals(table: Table, known: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
     """The list `signals`: a signal without its index stands for all of them; none is named twice."""
     every = {signal: name for name, signals in known.items() for signal in signals}
     found: list[str] = []
     for signal in table.texts("signals", ()):
-        if signal == "no_slip_margin_N" and signal not in every:
+        if signal == "no_slip_margin_N" and signal not in every and not known.get(FRICTION_PER_WHEEL[0]):
             table.fail("signals", f"{signal} needs vehicle.friction_coefficient; give it, or take the signal out")
         if known.get(signal):
             found += known[signal]

@@ -393,14 +393,21 @@ KEYS_OF_FORMS = {
 
 WORDS_IN_FILES = {
     "this wheel and wheel 0 ask": "this wheel and those of the carriage ask"}
+WORDS_OF_SLIP = {
+    "turns without inertia, and no wheel behind it sets its rate; give the body a yaw inertia, place the wheel behind "
+    "the hinge (a trail), or prescribe the rate":
+    "turns without inertia, and a wheel that may slip does not set its rate; give yaw_inertia_kgm2 above 0, or a mass "
+    "away from the hinge (mass_kg)"}
+"""What the core says of hinges on ideal ground, and what holds where wheels may slip."""
 AT_STARTS = {"vehicle.body: ": "vehicle: ", "twist: ": "steering_twist: ", "twist_rate: ": "steering_twist: "}
 """What the core says, and what holds of a scene file."""
 
 
-def refusal_of_hinges(refused: Refused, hinges: Sequence[Hinge], wheel_places: Sequence[str]) -> Refused:
+def refusal_of_hinges(refused: Refused, hinges: Sequence[Hinge], wheel_places: Sequence[str],
+                      slips: bool = False) -> Refused:
     """A refusal of the core by the tables of the file: the core counts all bodies and all wheels."""
     text = refused.message
-    for core, file in WORDS_IN_FILES.items():
+    for core, file in (WORDS_IN_FILES | (WORDS_OF_SLIP if slips else {})).items():
         text = text.replace(core, file)
     for core, file in AT_STARTS.items():
         if text.startswith(core):

@@ -2,14 +2,23 @@
 
 Tables of several are numbered from 1, and so are the numbers of a list (`initial.nu_rad_per_s[3]`); `[*]` is all of
 them. An angle may be named in radians or in degrees, whichever of the two the file has.
+
+Keys that name one number twice: by [*] and an index, in radians and degrees, a place in two kinds of coordinates.
+
+What holds for a key that a scene leaves out: the vehicle's value for a wheel, 0 for an offset …
 """
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
+from laconic.core import load
+from laconic.core.fields import ABOVE_0, OF_GROUND, WHEEL
 from laconic.core.given import shown
 from laconic.errors import BadInput, nearest_of
 from laconic.scene.keys import KEYS, TABLES
@@ -140,3 +149,78 @@ def _kind_of(words: str) -> tuple[str, int]:
         return one, 0
     return ("text", -1 if words.startswith("list") else 0) if "text" in words else \
         ("number", 2 if " 2 " in words else -1)
+
+
+PLAIN, POLAR = ("x_m", "y_m"), ("distance_m", "bearing_rad")
+
+
+def check_apart(option: str, keys: Sequence[KeyPath]) -> None:
+    """BadInput names the first two keys of which a run could not have both values; `option` is how they are given."""
+    for place, key in enumerate(keys):
+        for other in keys[:place]:
+            if not _same_tables(key, other):
+                continue
+            if _radians(key.name) == _radians(other.name) and _meet(key.item, other.item):
+                raise BadInput(f"{option} {key.text}: names a number that {option} {other.text} names, too; keep "
+                               "one of them")
+            if _coordinates(key) and _coordinates(key) != _coordinates(other) != ():
+                raise BadInput(f"{option} {key.text}: places a wheel that {option} {other.text} places, too; keep x_m "
+                               "and y_m, or distance_m and bearing_rad")
+
+
+def _same_tables(one: KeyPath, other: KeyPath) -> bool:
+    """Whether some table holds both."""
+    return len(one.tables) == len(other.tables) and all(
+        name == name_too and _meet(item, item_too)
+        for (name, item), (name_too, item_too) in zip(one.tables, other.tables, strict=True))
+
+
+def _meet(one: int | None, other: int | None) -> bool:
+    return one == other or EVERY in (one, other)
+
+
+def _radians(name: str) -> str:
+    return f"{name.removesuffix('_deg')}_rad" if name.endswith("_deg") else name
+
+
+def _coordinates(key: KeyPath) -> tuple[str, ...]:
+    """In which a key says where a wheel is; none where it says something else."""
+    if key.table != WHEEL:
+        return ()
+    return next((each for each in (PLAIN, POLAR) if _radians(key.name) in each), ())
+
+
+ABSENT_IS_0 = ("vehicle", "vehicle.motor", "vehicle.payload", "ground", "initial")
+
+
+def default_of(entries: Mapping[str, Any], table: Mapping[str, Any], key: KeyPath) -> Any:
+    """The value of a key that `table` does not have; None where leaving it out means something of its own."""
+    name = key.name
+    if key.table == WHEEL:
+        return _of_wheel(entries, table, name)
+    known = KEYS.get(key.known.path)
+    if known is not None and isinstance(known.default, int | float | str):
+        return known.default
+    if known is not None and isinstance(known.default, tuple) and known.default:
+        return list(known.default)
+    radians = f"{name.removesuffix('_deg')}_rad" if name.endswith("_deg") else name
+    field = next((each for each in load().fields_of(key.table) if each.key == radians), None)
+    if field is None or field.kind != "REAL" or key.table not in ABSENT_IS_0 or (key.table == "vehicle" and
+                                                                                 field.need != "NEVER"):
+        return None
+    return [0.0] * field.items if field.path.endswith("[#]") and field.items == 3 else 0.0
+
+
+def _of_wheel(entries: Mapping[str, Any], wheel: Mapping[str, Any], name: str) -> Any:
+    if name in ("locked", "driven", "motor_circuit"):
+        return {"locked": False, "driven": True, "motor_circuit": "driven"}[name]
+    if name in ("roller_rad", "roller_deg") and wheel.get("kind") == "omni":
+        return 90.0 if name == "roller_deg" else math.pi / 2
+    own = next((field for field in load().own_fields() if field.key == name), None)
+    if own is None:
+        return None
+    vehicle = entries.get("vehicle", {})
+    if name.startswith("motor_") and "motor" in vehicle:  # from the motor at its shaft
+        return None
+    holder = entries.get("ground", {}) if name in OF_GROUND else vehicle
+    return holder.get(own.vehicle_key, None if name in ABOVE_0 else 0.0)

@@ -13,7 +13,7 @@ from laconic.core.inputs import no_such_wheel
 from laconic.core.spelling import PLAIN, place_by_bearing
 from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.base import read_base, read_frc
-from laconic.scene.drives import read_ardupilot, read_drives
+from laconic.scene.drives import read_ardupilot, read_drives, read_speed_controller
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground, slips
@@ -31,7 +31,6 @@ from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.sensors import NO_SENSORS, SensorTables, read_sensors
 from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
-from laconic.scene.speed_controller import read_speed_controller
 from laconic.scene.step_choice import AUTO, LARGEST_TOLERANCE
 from laconic.scene.table import Table
 

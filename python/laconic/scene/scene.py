@@ -20,7 +20,7 @@ from laconic.core.sensors import Sensors
 from laconic.core.slipping import SlippingVehicle
 from laconic.errors import BadInput, Refused
 from laconic.scene.base import BaseTable, FrcTable
-from laconic.scene.drives import ArduPilotTable, Drives
+from laconic.scene.drives import ArduPilotTable, Drives, SpeedController
 from laconic.scene.ground import slips
 from laconic.scene.hinges import Hinge, check_without_hinges, refusal_of_hinges
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
@@ -28,7 +28,6 @@ from laconic.scene.methods import METHODS
 from laconic.scene.names import in_file
 from laconic.scene.reader import methods_with_hinges, read_parts, read_run
 from laconic.scene.sensors import DELAY_S, NO_SENSORS, SensorTables
-from laconic.scene.speed_controller import SpeedController
 from laconic.scene.step_choice import AUTO, chosen_step_s
 from laconic.scene.table import Table, plain, read_toml
 
@@ -198,7 +197,7 @@ class Scene:
         """The checked vehicle of a scene with hinges on ideal ground."""
         if self.slips_on_hinges:
             raise BadInput(f"{self.path}: ground.friction_coefficient: this does not take hinges on ground with "
-                           "friction yet; use laconic simulate or laconic fmu, or take it out")
+                           "friction yet; use laconic simulate, laconic fmu or laconic rig, or take it out")
         return self._with_room(core, ArticulatedVehicle)
 
     def slipping_vehicle(self, core: Core) -> SlippingVehicle:
@@ -240,7 +239,7 @@ class Scene:
         if refused.status == "overflow" and not refused.field:
             refused = refused.at("vehicle")  # of its numbers together
         if self.has_hinges:
-            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places)
+            refused = refusal_of_hinges(refused, self.hinges, self.wheel_places, self.slips_on_hinges)
         return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
 
     def steps(self) -> int:

@@ -18,8 +18,7 @@ from laconic.base.paths import scene_path
 from laconic.core.given import shown
 from laconic.core.spelling import PLAIN, x_and_y
 from laconic.errors import BadInput
-from laconic.scene.key_defaults import default_of
-from laconic.scene.key_path import EVERY, KeyPath, key_path
+from laconic.scene.key_path import EVERY, KeyPath, default_of, key_path
 from laconic.scene.scene import Scene, scene_of
 from laconic.scene.scene_text import lines_of
 from laconic.scene.step_choice import AUTO

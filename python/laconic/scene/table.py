@@ -1,4 +1,7 @@
-"""A TOML table that is read key by key: what is missing, of the wrong kind or unknown becomes one clear line."""
+"""A TOML table that is read key by key: what is missing, of the wrong kind or unknown becomes one clear line.
+
+Reads the TOML of a map, in any of the encodings that logs may have.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from datetime import date, time
 from pathlib import Path
 from typing import Any, NoReturn
 
+from laconic.base.text_file import NotText, decoded
 from laconic.core.given import is_masked
 from laconic.core.spelling import is_in_degrees
 from laconic.errors import BadInput, cut, nearest_of, reason_of, shown
@@ -280,3 +284,17 @@ def _shown(value: Any) -> str:
     if is_masked(value):
         return "masked"
     return str(value) if isinstance(value, date | time) else shown(value)  # dates as they are written
+
+
+TWICE = {"pose": 'keep the table, and write the topic there: topic = "/odom"',
+         "imu": "keep one of them; a gyro with more keys is [yaw_rate]",
+         "joints": "keep one of them; more about the wheels is said under [wheel_angle]"}
+"""What to do about keys that are a topic, or a table that says more."""
+
+
+def read_map_toml(path: Path) -> Table:
+    """The top table of a map; BadInput names the line that is wrong."""
+    try:
+        return read_toml(path, lambda data: decoded(data).text, TWICE)
+    except NotText as why:
+        raise BadInput(f"{path}: {why}; give a map as TOML text") from None

@@ -161,7 +161,8 @@ class Rows(KeptRows):
         self._of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
         self._of_load = "no_slip_margin_N" in names or bool(scene.vehicle["friction_coefficient"])
         self._accelerates = "acceleration_body_m_per_s2" in names
-        self.least_margin: tuple[float, float] | None = None  # N, s
+        self._friction = float(scene.vehicle["friction_coefficient"])
+        self.least_margin: tuple[float, float, int] | None = None  # N, s, number of the wheel
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._parts = [(signal, *parts_of(signal, of_hinge)) for signal in kept]
         self._follows_commands = bool(names & {ANGLE, CURVATURE})
@@ -172,15 +173,15 @@ class Rows(KeptRows):
         """The outputs at the start of a step, in which `row` acts."""
         motion, given = plant.motion(), self._inputs.held_at(tick) if self._follows_commands else {}
         self._folds.take(motion.hinge_angle_rad, tick * self._inputs.step_s)
-        reactions = None
+        reactions, loads = None, self._loads.of(motion) if self._of_load else None
         if self._of_ground or self._of_load:
-            loads = self._loads.of(motion) if self._of_load else None
             if loads is not None:
                 self.see_lifted(loads < -NO_LOAD * loads.sum(), tick * self._inputs.step_s)
             reactions = plant.reactions(row, loads)
-        if self._of_load and reactions and (self.least_margin is None
-                                            or reactions.no_slip_margin_N < self.least_margin[0]):
-            self.least_margin = reactions.no_slip_margin_N, tick * self._inputs.step_s
+        if loads is not None and reactions and (self.least_margin is None
+                                                or reactions.no_slip_margin_N < self.least_margin[0]):
+            self.least_margin = (reactions.no_slip_margin_N, tick * self._inputs.step_s,
+                                 _nearest_to_slip(self._friction * loads, reactions))
         acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
         self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
 
@@ -208,6 +209,12 @@ class Rows(KeptRows):
         if name in (ANGLE, CURVATURE):
             return given.get(signal, 0.0)
         return float(row[self._slots[signal]])
+
+
+def _nearest_to_slip(available_N: np.ndarray, reactions: ArticulatedReactions) -> int:
+    """The number of the wheel with the least margin."""
+    return int(np.argmin(available_N - np.hypot(reactions.along_N, reactions.lateral_N))) + 1
+
 
 def given_start(scene: Scene, vehicle: ArticulatedVehicle) -> dict[str, Any]:
     """The numbers of a scene's start, as ArticulatedVehicle.plant takes them."""

@@ -70,7 +70,7 @@ class Trajectory:
     limited: tuple[Limited, ...] = ()  # with hinges: the limits that held commands back
     folded: tuple[Folded, ...] = ()  # with hinges: trailers that turned by more than a right angle
     lifted: tuple[int, float] | None = None  # with hinges: the first wheel that carried nothing, and when in s
-    least_margin: tuple[float, float] | None = None  # with hinges and friction known: N, and when in s
+    least_margin: tuple[float, float, int] | None = None  # with hinges and friction known: N, when in s, which wheel
     slip_loss_J: float | None = None  # with hinges where wheels may slip: what slip and scrub took
 
     def __repr__(self) -> str:

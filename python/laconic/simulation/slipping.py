@@ -28,7 +28,7 @@ from laconic.simulation.steering import Commands
 
 CHUNK = 2048  # steps whose inputs are made ready at once
 LIFTED = 2    # a contact_state
-MIDDLE = 1    # of the samples of a step: start, middle, end
+MIDDLE, END = 1, 2  # of the samples of a step: start, middle, end
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
          "hinge_rate_rad_per_s", "hinge_reaction_Nm", "wheel_speed_rad_per_s", "wheel_angle_rad", "slip_along_m_per_s",
          "slip_across_m_per_s", "contact_state", "wheel_load_N", "energy_J", *BOOK)
@@ -50,6 +50,7 @@ class SlippingCommands(Commands):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._winding: dict[str, tuple[float, float]] = {}  # direction of each coordinated hinge, and whole turns
         self._coordinated = [hinge for hinge in self.scene.hinges if hinge.kind == "coordinated"]
         self._steering = self._steering_of() if self._coordinated else None
         names = self.vehicle.names
@@ -74,29 +75,28 @@ class SlippingCommands(Commands):
 
     def held_rows(self, first: int, count: int) -> np.ndarray:
         """The inputs of steps `first` …, held over each. Fewer where a limit ends the run: then `refused` is set."""
-        angles = dict(self._angle)
+        before = dict(self._angle)
         ideal = self.rows(first, count)
         sampled = self.inputs.samples(first, count)
         held = np.zeros((len(ideal), tree_row_length(self.vehicle.core)))
         for signal, at in self._numbers.items():
             if signal.partition("[")[0] not in (ANGLE, CURVATURE, TWIST):
                 held[:, self.vehicle.slot(signal)] = sampled[: len(ideal), MIDDLE, at]
-        given, h = sampled[:, [0, 2]], self.inputs.step_s
         for hinge in self.scene.hinges:
             rate = self._rates[hinge.name]
             if hinge.kind == "prescribed":
                 held[:, rate] = ideal[:, :, rate].mean(axis=1)
             elif hinge.follows == "angle" and hinge.kind != "coordinated":
-                scratch = np.zeros_like(ideal)
-                if f"{ANGLE}[{hinge.name}]" in self._numbers:
-                    end = self._until(partial(self._follow, hinge, scratch, given[: len(ideal)], first),
-                                      first + len(ideal))
-                    if self.refused:
-                        ideal, held, scratch = (each[: end - first] for each in (ideal, held, scratch))
-                    held[:, self._targets[hinge.name]] = angles[hinge.name] + h * np.cumsum(
-                        scratch[:, :, rate].mean(axis=1))
+                column = self._numbers.get(f"{ANGLE}[{hinge.name}]")
+                targets = np.zeros(len(ideal)) if column is None else sampled[: len(ideal), END, column]
+                reached = np.zeros(len(ideal))
+                end = self._until(partial(self._go_to, hinge, np.zeros_like(ideal), targets, first, reached),
+                                  first + len(ideal))
+                if self.refused:
+                    ideal, held, reached = (each[: end - first] for each in (ideal, held, reached))
+                held[:, self._targets[hinge.name]] = reached
         if self._steering is not None:
-            self._coordinate(held, ideal[:, 1], angles, first)
+            self._coordinate(held, ideal[:, 1], before, first)
         return held
 
     def _coordinate(self, held: np.ndarray, ideal: np.ndarray, before: dict[str, float], first: int) -> None:
@@ -108,12 +108,20 @@ class SlippingCommands(Commands):
             raise self._no_direction(first + int(none[0]))
         directions = np.array([self._steering.angles(twist) for twist in twists]).reshape(len(twists), -1)
         for column, hinge in enumerate(self._coordinated):
-            path = np.unwrap(np.concatenate([[before[hinge.name]], directions[:, column]]))
+            raw, turns = self._winding.get(hinge.name, (math.nan, 0.0))
+            if math.isnan(raw):  # at the start, as start_angles() set it
+                raw = wrapped(before[hinge.name])
+                turns = float(np.rint((before[hinge.name] - raw) / (2.0 * math.pi)))
+            changes = np.diff(directions[:, column], prepend=raw)
+            winding = turns - np.cumsum(np.where(np.abs(changes) > math.pi, np.sign(changes), 0.0))
+            path = directions[:, column] + 2.0 * math.pi * winding
             if hinge.follows:
-                held[:, self._targets[hinge.name]] = path[1:]
+                held[:, self._targets[hinge.name]] = path
             else:
-                held[:, self._rates[hinge.name]] = np.diff(path) / h
-            self._angle[hinge.name] = float(path[-1])
+                held[:, self._rates[hinge.name]] = np.diff(path, prepend=before[hinge.name]) / h
+            if len(path):
+                self._winding[hinge.name] = (float(directions[-1, column]), float(winding[-1]))
+                self._angle[hinge.name] = float(path[-1])
 
 
 class SlippingRows(KeptRows):

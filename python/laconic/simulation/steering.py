@@ -158,25 +158,32 @@ class Commands:
 
     def _follow(self, hinge: Hinge, rows: np.ndarray, given: np.ndarray, first: int) -> None:
         """Rates of one hinge within its limits, towards a commanded angle or along a commanded rate."""
-        slot, h = self.vehicle.slot(f"{RATE}[{hinge.name}]"), self.inputs.step_s
         column = self._numbers.get(f"{ANGLE}[{hinge.name}]")
+        targets = None if column is None else given[:, 1, column]
+        self._go_to(hinge, rows, targets, first, np.zeros(len(rows)))
+
+    def _go_to(self, hinge: Hinge, rows: np.ndarray, targets: np.ndarray | None, first: int, reached: np.ndarray
+               ) -> None:
+        """The same towards given angles, or along the rates in `rows`; `reached` gets the angle at each step's end."""
+        slot, h = self.vehicle.slot(f"{RATE}[{hinge.name}]"), self.inputs.step_s
         angle, most = self._angle[hinge.name], hinge.rate_limit_rad_per_s
-        rates = rows[:, :, slot] if column is None else _held_rates(angle, given[:, 1, column], h)
-        ends = np.cumsum([angle, *(0.5 * h * rates.sum(axis=1))])[1:] if column is None else given[:, 1, column]
+        rates = rows[:, :, slot] if targets is None else _held_rates(angle, targets, h)
+        ends = np.cumsum([angle, *(0.5 * h * rates.sum(axis=1))])[1:] if targets is None else targets
         if len(ends) and np.abs(rates).max() <= most and hinge.low_rad <= ends.min() and ends.max() <= hinge.high_rad:
             rows[:, :, slot], self._angle[hinge.name] = rates, float(ends[-1])  # no limit holds it back
+            reached[:] = ends
             return
         for k in range(len(rows)):
-            if column is None:
+            if targets is None:
                 wanted = rows[k, :, slot]
             else:
-                target = given[k, 1, column]
+                target = targets[k]
                 within = min(max(target, hinge.low_rad), hinge.high_rad)
                 if abs(within - target) > OF_ANGLE:
                     self._limit(hinge, "angle", first + k, target, within)
                 wanted = np.full(2, (within - angle) / h)
             rates = np.clip(wanted, -most, most)
-            is_reached = column is not None and np.array_equal(rates, wanted)
+            is_reached = targets is not None and np.array_equal(rates, wanted)
             if np.any(np.abs(wanted) > most * (1.0 + ROUNDING)):
                 self._limit(hinge, "rate", first + k, float(np.max(np.abs(wanted))), most)
             end = within if is_reached else angle + 0.5 * h * float(rates.sum())
@@ -184,7 +191,7 @@ class Commands:
             if abs(stop - end) > OF_ANGLE:
                 self._limit(hinge, "angle", first + k, end, stop)
                 rates = np.full(2, (stop - angle) / h)
-            rows[k, :, slot], angle = rates, stop
+            rows[k, :, slot], angle, reached[k] = rates, stop, stop
         self._angle[hinge.name] = angle
 
     def _limit(self, hinge: Hinge, what: str, step: int, value: float, limit: float) -> None:

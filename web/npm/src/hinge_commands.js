@@ -2,6 +2,8 @@
 import { Refused } from "./refused.js";
 
 /** @typedef {import("./hinge_tables.js").Hinge} Hinge */
+/** @typedef {{rates: {name: string, rate: number, angle?: number}[], twist: number[]}} Acting
+ *   where wheels may slip, the angle is the target of a servo or loop */
 
 const AHEAD = [1, 0, 0];
 const ROUNDING = 1e-9; // of a limit of rate
@@ -150,7 +152,7 @@ export class Commands {
     return this.isLimited ? this.unit(this.wanted) : this.wanted;
   }
 
-  /** What acts while all is settled. */
+  /** What acts while all is settled. @returns {Acting} */
   rest() {
     return {
       rates: this.prescribed.map(({ name }) => ({ name, rate: this.targets.has(name) ? 0 : (this.rates.get(name) ?? 0) })),
@@ -158,7 +160,10 @@ export class Commands {
     };
   }
 
-  /** The rate of each prescribed hinge, and the twist at the end, of one step from `time_s`. */
+  /**
+   * The rate of each prescribed hinge, and the twist at the end, of one step from `time_s`.
+   * @returns {Acting & {undo: () => void}}
+   */
   step(/** @type {number} */ time_s, /** @type {number} */ h) {
     const angles = new Map(this.angles),
       limited = new Map([...this.limited].map(([key, each]) => [key, { ...each }])),
@@ -186,7 +191,7 @@ export class Commands {
   /** The rate of a prescribed hinge over a step, within its limits. */
   follow(/** @type {Hinge} */ hinge, /** @type {number} */ time_s, /** @type {number} */ h) {
     const angle = this.angle(hinge),
-      target = this.targets.get(hinge.name);
+      target = this.targets.get(hinge.name) ?? (hinge.follows ? 0 : undefined);
     let wanted = this.rates.get(hinge.name) ?? 0;
     if (target !== undefined) {
       const reachable = within(target, hinge.low, hinge.high);
@@ -318,6 +323,100 @@ export class Commands {
       this.angles.set(hinge.name, angle + 2 * Math.PI * Math.round((hinge.angle - angle) / (2 * Math.PI)));
     });
   }
+}
+
+/** Commands where wheels may slip: servos and loops get angles or rates, coordinated hinges turn along the twist. */
+export class SlippingCommands extends Commands {
+  /** @param {Hinge[]} hinges @param {any[]} bodies @param {number} axle_x_m */
+  constructor(hinges, bodies, axle_x_m) {
+    super(hinges, bodies, axle_x_m);
+    this.followers = hinges.filter(({ kind, follows }) => follows && kind !== "coordinated");
+    /** Direction of each coordinated hinge in [−π, π], and the turns that it is beyond. */
+    this.raw = /** @type {number[]} */ ([]);
+    this.turnsBeyond = /** @type {number[]} */ ([]);
+  }
+
+  begin(/** @type {Hinge[]} */ hinges) {
+    super.begin(hinges);
+    if (!this.coordinated.length) return;
+    askDirection(this.twist);
+    this.takeAngles();
+    this.raw = this.directions(this.twist).map(([x, y]) => angleOf(x, y));
+    this.turnsBeyond = this.coordinated.map((hinge, k) =>
+      Math.round((this.angle(hinge) - this.raw[k]) / (2 * Math.PI)),
+    );
+  }
+
+  get isSettled() {
+    const rest = this.followers.every((hinge) => {
+      const target = this.targets.get(hinge.name) ?? 0;
+      return hinge.follows === "rate" || (target === this.angle(hinge) && isBetween(hinge, target));
+    });
+    return rest && super.isSettled;
+  }
+
+  rest() {
+    const { rates, twist } = super.rest(),
+      turned = this.coordinated.map((hinge) => ({ name: hinge.name, rate: 0, angle: this.angle(hinge) }));
+    return { rates: [...rates, ...this.followers.map((hinge) => this.held(hinge)), ...turned], twist };
+  }
+
+  /** Target of a servo or loop, angles as they are. */
+  held(/** @type {Hinge} */ { name, follows }) {
+    return follows === "rate"
+      ? { name, rate: this.rates.get(name) ?? 0 }
+      : { name, rate: 0, angle: this.angles.get(name) };
+  }
+
+  step(/** @type {number} */ time_s, /** @type {number} */ h) {
+    const { raw, turnsBeyond } = this,
+      before = new Map(this.angles),
+      limited = new Map([...this.limited].map(([key, each]) => [key, { ...each }])),
+      twist = this.twist;
+    const undo = () => {
+      this.restore(before, limited, twist);
+      [this.raw, this.turnsBeyond] = [raw, turnsBeyond];
+    };
+    try {
+      const { rates } = super.step(time_s, h);
+      for (const hinge of this.followers) {
+        if (hinge.follows === "angle") this.follow(hinge, time_s, h);
+        rates.push(this.held(hinge));
+      }
+      rates.push(...this.coordinate(before, h));
+      return { rates, twist: this.twist, undo };
+    } catch (refused) {
+      undo();
+      throw refused;
+    }
+  }
+
+  /** Angles and rates of coordinated hinges along the twist at the end of a step. */
+  coordinate(/** @type {Map<string, number>} */ before, /** @type {number} */ h) {
+    if (!this.coordinated.length) return [];
+    askDirection(this.twist);
+    const found = this.directions(this.twist).map(([x, y]) => angleOf(x, y));
+    this.turnsBeyond = found.map((angle, k) => {
+      const change = angle - this.raw[k];
+      return this.turnsBeyond[k] - (Math.abs(change) > Math.PI ? Math.sign(change) : 0);
+    });
+    this.raw = found;
+    return this.coordinated.map(({ name, follows }, k) => {
+      const angle = found[k] + 2 * Math.PI * this.turnsBeyond[k],
+        rate = follows ? 0 : (angle - (before.get(name) ?? 0)) / h;
+      this.angles.set(name, angle);
+      return { name, rate, angle };
+    });
+  }
+}
+
+function askDirection(/** @type {number[]} */ twist) {
+  if (isZero(twist))
+    throw new Refused(
+      "steering_twist",
+      "is 0, which gives coordinated wheels no direction; stop by voltages, and keep the twist",
+      "twist zero",
+    );
 }
 
 function same(/** @type {number[]} */ a, /** @type {number[]} */ b) {

@@ -1,7 +1,6 @@
 // What acts on a vehicle with hinges, by names: checked, so that a refused input changes nothing.
-import { askFinite, askKeys, askNumbers, askTable } from "./checks.js";
+import { PLAIN_INPUTS, askFinite, askKeys, askNumbers, askTable, plainValues } from "./checks.js";
 import { CARRIAGE } from "./hinge_tables.js";
-import { PLAIN_INPUTS, plainValues } from "./inputs.js";
 import { Refused } from "./refused.js";
 import { inPlace } from "./scene.js";
 
@@ -58,7 +57,7 @@ export class InputReader {
   /** Numbers by the names of hinges that have such an input. @returns {Record<string, number>} */
   byName(/** @type {string} */ name, /** @type {any} */ given) {
     const kinds = HINGE_INPUTS[name],
-      known = this.hinges.filter(({ kind }) => kinds.includes(kind)).map((each) => each.name);
+      known = this.hinges.filter((each) => kinds.includes(each.kind) || takes(each, name)).map((each) => each.name);
     const remedy = known.length ? `give numbers for ${known.join(", ")}` : "this vehicle has no such hinge; take it out";
     askTable(name, given, remedy);
     for (const [hinge, value] of Object.entries(given)) {
@@ -87,19 +86,25 @@ export class InputReader {
       );
     const number = askFinite(name, value);
     if (name === "steering_curvature_per_m") return this.commands.ofCurvature(number);
-    if (!this.commands.coordinated.some(({ rateLimit }) => Number.isFinite(rateLimit)))
+    if (!this.commands.coordinated.some(({ rateLimit, follows }) => follows || Number.isFinite(rateLimit)))
       this.askRateLimit(this.commands.coordinated[0]);
     return this.commands.ofAngle(number);
   }
 
   askRateLimit(/** @type {Hinge | undefined} */ hinge) {
-    if (hinge && !Number.isFinite(hinge.rateLimit))
+    if (hinge && !hinge.follows && !Number.isFinite(hinge.rateLimit))
       throw new Refused(
         `${hinge.place}.rate_limit_rad_per_s`,
         "is missing; steering_angle_rad is followed within a largest rate, which it must give",
         "missing",
       );
   }
+}
+
+/** Whether the servo or loop of a hinge takes such a command, or a servo's hinge a torque. */
+function takes(/** @type {Hinge} */ { kind, follows }, /** @type {string} */ name) {
+  if (name === "hinge_torque_Nm") return kind === "servo";
+  return Boolean(follows) && kind !== "coordinated" && name === `steering_${follows}_rad${follows === "rate" ? "_per_s" : ""}`;
 }
 
 /** ξ of the line on which the carriage's own fixed wheels stand; 0 where it has none. */

@@ -1,14 +1,16 @@
 // Bodies on hinges in a scene: steered wheels, casters and trailers, and the general body that they are short for.
 import { askFinite, askFlag, askList, askTable, toldOf, unknownKey } from "./checks.js";
+import { OF_WHEELS, contactOf, refusedForGround, turnedBy } from "./hinge_friction.js";
 import { HINGE_KEYS } from "./hinge_keys.js";
 import { Refused } from "./refused.js";
 import { inPlace, inRad } from "./scene.js";
 
 /**
  * @typedef {{name: string, kind: string, place: string, low: number, high: number, rateLimit: number,
- *   refuses: boolean, angle: number, rate: number}} Hinge what the core does not know of a hinge
+ *   refuses: boolean, angle: number, rate: number, follows: string}} Hinge what the core does not know of a hinge
  * @typedef {Record<string, any>} Body the numbers of a body, its name, its parent's name and its hinge's kind
- * @typedef {{table: Record<string, any>, body: string, place: string}} Wheel a wheel without what its body is
+ * @typedef {{table: Record<string, any>, body: string, place: string, contact: Record<string, number>}} Wheel
+ *   a wheel without what its body is
  * @typedef {{body: Body, hinge: Hinge, wheels: Wheel[]}} Part what one table contributes
  * @typedef {{bodies: Body[], hinges: Hinge[], wheels: Wheel[]}} Hung all of a vehicle, parents first
  */
@@ -18,7 +20,7 @@ export const HINGE_KINDS = ["free", "motor", "prescribed", "coordinated"]; // nu
 const COMMANDED = ["prescribed", "coordinated"];
 const ROLLS_FORWARD_RAD = -Math.PI / 2; // the axle of a wheel whose positive speed is forward
 const NAME = /^[\p{L}_][\p{L}\p{N}_-]*$/u; // it stands in brackets behind a signal
-const OF_EACH_WHEEL = ["body", "steered"];
+const OF_EACH_WHEEL = ["body", "steered", ...OF_WHEELS];
 /** @type {Record<string, {holds: (value: number) => boolean, give: string}>} */
 const RULES = {
   POSITIVE: { holds: (value) => value > 0, give: "is not positive; give a value above 0" },
@@ -30,20 +32,21 @@ function isCommanded(/** @type {string} */ kind) {
   return COMMANDED.includes(kind);
 }
 
-/** Every body that a vehicle has, and all its wheels with the names of their bodies. @returns {Hung} */
-export function readHinges(/** @type {any} */ vehicle) {
+/** Every body that a vehicle has, and all its wheels with the names of their bodies; `slips`: the ground has friction.
+ * @param {any} vehicle @param {boolean} slips @returns {Hung} */
+export function readHinges(vehicle, slips) {
   const lists = Object.fromEntries(["wheel", "body", "caster", "trailer"].map((form) => [form, listOf(vehicle, form)]));
   /** @type {Wheel[]} */
   const wheels = [];
   /** @type {Part[]} */
-  const parts = lists.body.map(({ place, given }) => general(place, given));
+  const parts = lists.body.map(({ place, given }) => general(place, given, slips));
   lists.wheel.forEach(({ place, given }, index) => {
-    const { wheel, part } = ownWheel(place, given, index + 1);
+    const { wheel, part } = ownWheel(place, given, index + 1, slips);
     wheels.push(wheel);
     if (part) parts.push(part);
   });
-  const short = [...lists.caster.map(({ place, given }, index) => caster(place, given, index + 1))];
-  short.push(...lists.trailer.map(({ place, given }, index) => trailer(place, given, index + 1)));
+  const short = [...lists.caster.map(({ place, given }, index) => caster(place, given, index + 1, slips))];
+  short.push(...lists.trailer.map(({ place, given }, index) => trailer(place, given, index + 1, slips)));
   const sorted = parentsFirst(checkNames([...parts, ...short]));
   const names = [CARRIAGE, ...sorted.map(({ hinge }) => hinge.name)];
   for (const { body, place } of wheels)
@@ -101,29 +104,37 @@ function ownWheel(
   /** @type {string} */ place,
   /** @type {Record<string, any>} */ given,
   /** @type {number} */ number,
+  /** @type {boolean} */ slips,
 ) {
   const isOfHinge = (/** @type {string} */ key) => Object.hasOwn(HINGE_KEYS["vehicle.wheel[#]"], key);
   const table = Object.fromEntries(Object.entries(given).filter(([key]) => !isOfHinge(key)));
   delete table.steering_motor;
   const own = read(place, given, () => true),
-    body = own.body ?? CARRIAGE;
+    body = own.body ?? CARRIAGE,
+    contact = contactOf(place, given, own, slips);
   if (own.steered === null) {
     for (const key of Object.keys(given))
       if ((isOfHinge(key) && !OF_EACH_WHEEL.includes(key)) || key === "steering_motor")
         throw noEffect(`${place}.${key}`, "has a meaning for a steered wheel alone; give steered, or take it out");
-    return { wheel: { table, body, place }, part: undefined };
+    return { wheel: { table, body, place, contact }, part: undefined };
   }
   if (table.kind !== "fixed")
     throw new Refused(`${place}.kind`, `is ${toldOf(table.kind)}; a steered wheel is "fixed" to what turns it`, "kind");
+  if (own.steered === "servo" && !slips)
+    throw new Refused(
+      `${place}.steered`,
+      '"servo" gives way, which needs ground.friction_coefficient; give it, or "prescribed"',
+      "no effect",
+    );
   const hinge = hingeOf(place, own, own.steered, `wheel_${number}`),
     at = placeOf(place, table);
   const turned = { name: hinge.name, parent: body, hinge: own.steered, hinge_x_m: at.x_m, hinge_y_m: at.y_m };
   const numbers = { ...turned, mass_kg: own.mass_kg, yaw_inertia_kgm2: own.yaw_inertia_kgm2 };
-  const motor = motorOf(place, given, own, own.steered, "steering_");
+  const motor = motorOf(place, given, own, own.steered, "steering_", slips);
   const under = { axle_rad: ROLLS_FORWARD_RAD, ...at.rest, x_m: 0, y_m: own.scrub_m };
   return {
-    wheel: { table: under, body: hinge.name, place },
-    part: { body: withMotor(numbers, motor), hinge, wheels: [] },
+    wheel: { table: under, body: hinge.name, place, contact },
+    part: turnedBy({ body: withMotor(numbers, motor), hinge, wheels: [] }, given, own, slips),
   };
 }
 
@@ -138,29 +149,46 @@ function caster(
   /** @type {string} */ place,
   /** @type {Record<string, any>} */ given,
   /** @type {number} */ number,
+  /** @type {boolean} */ slips,
 ) {
   const own = read(place, given),
     left = own.twin_m === null ? [own.offset_m] : [own.offset_m + own.twin_m / 2, own.offset_m - own.twin_m / 2];
   const hinge = hingeOf(place, own, "free", `caster_${number}`);
-  return freePart(hinge, own, { hinge_x_m: own.x_m, hinge_y_m: own.y_m }, own.trail_m, left, own.driven ?? false);
+  const part = freePart(hinge, own, { hinge_x_m: own.x_m, hinge_y_m: own.y_m }, own.trail_m, left, own.driven ?? false);
+  return slidingPart(part, given, own, slips);
 }
 
 function trailer(
   /** @type {string} */ place,
   /** @type {Record<string, any>} */ given,
   /** @type {number} */ number,
+  /** @type {boolean} */ slips,
 ) {
   const own = read(place, given),
     half = own.track_m / 2;
   const hinge = hingeOf(place, own, "free", `trailer_${number}`);
-  return freePart(hinge, own, { hinge_x_m: own.hitch_x_m, hinge_y_m: own.hitch_y_m }, own.length_m, [half, -half], false);
+  const at = { hinge_x_m: own.hitch_x_m, hinge_y_m: own.hitch_y_m, ...(slips && { hitch: true }) };
+  return slidingPart(freePart(hinge, own, at, own.length_m, [half, -half], false), given, own, slips);
+}
+
+/** What a caster or trailer and its wheels have where these may slip. @returns {Part} */
+function slidingPart(/** @type {Part} */ part, /** @type {any} */ given, /** @type {any} */ own, /** @type {boolean} */ slips) {
+  const { place } = part.hinge,
+    contact = contactOf(place, given, own, slips);
+  if (slips && !own.wheel_inertia_kgm2)
+    throw new Refused(
+      `${place}.wheel_inertia_kgm2`,
+      "is 0, and a wheel that may slip has a speed of its own; give a value above 0",
+      "out of range",
+    );
+  return turnedBy({ ...part, wheels: part.wheels.map((each) => ({ ...each, contact })) }, given, own, slips);
 }
 
 /** A body on a free hinge with wheels on one axle behind it. */
 function freePart(
   /** @type {Hinge} */ hinge,
   /** @type {Record<string, any>} */ own,
-  /** @type {Record<string, number>} */ at,
+  /** @type {Record<string, any>} */ at,
   /** @type {number} */ behind,
   /** @type {number[]} */ left,
   /** @type {boolean} */ driven,
@@ -173,21 +201,25 @@ function freePart(
     table: { ...table, y_m, inertia_kgm2: own.wheel_inertia_kgm2 },
     body: hinge.name,
     place: hinge.place,
+    contact: {},
   }));
   return { body: { ...body, ...numbers }, hinge, wheels };
 }
 
-function general(/** @type {string} */ place, /** @type {Record<string, any>} */ given) {
+function general(/** @type {string} */ place, /** @type {Record<string, any>} */ given, /** @type {boolean} */ slips) {
   const own = read(place, given, (key) => key === "motor"),
-    hinge = hingeOf(place, own, own.hinge, undefined);
+    kind = slips && own.hinge === "free" && own.servo_gain_Nm_per_rad ? "servo" : own.hinge,
+    hinge = hingeOf(place, own, kind, undefined);
   const numbers = ["hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "stiffness_Nm"];
   const body = { name: hinge.name, parent: own.parent ?? CARRIAGE, hinge: own.hinge, rest_rad: own.rest_rad };
-  const motor = motorOf(place, given, own, own.hinge, "");
+  const motor = motorOf(place, given, own, own.hinge, "", slips);
   const found = withMotor({ ...body, ...Object.fromEntries(numbers.map((key) => [key, own[key]])) }, motor);
   for (const key of ["damping_Nms", "stiffness_Nm"])
     if (isCommanded(own.hinge) && found[key])
       throw noEffect(`${place}.${key}`, `has no effect on a ${own.hinge} hinge, whose rate is an input; take it out`);
-  return { body: found, hinge, wheels: [] };
+  if (given.hitch !== undefined && !slips) throw refusedForGround(`${place}.hitch`);
+  if (own.hitch) found.hitch = true;
+  return turnedBy({ body: found, hinge, wheels: [] }, given, own, slips);
 }
 
 /** Gain, damping and inertia of a hinge: given directly, or those of a motor at its shaft. */
@@ -197,6 +229,7 @@ function motorOf(
   /** @type {Record<string, any>} */ own,
   /** @type {string} */ kind,
   /** @type {string} */ prefix,
+  /** @type {boolean} */ slips,
 ) {
   const key = `${prefix}motor`,
     gain = `${prefix}gain_Nm_per_V`,
@@ -220,7 +253,10 @@ function motorOf(
     if (given[each] !== undefined) throw noEffect(`${place}.${each}`, `is given besides ${key}; keep one of them`);
   const m = read(`${place}.${key}`, askTable(`${place}.${key}`, given[key])),
     ratio = m.gear_ratio;
+  if (m.current_limit_A !== null && !slips) throw refusedForGround(`${place}.${key}.current_limit_A`);
   return {
+    ...(slips && { winding_resistance_ohm: m.resistance_ohm, viscous_friction_Nms: ratio * ratio * m.viscous_friction_Nms }),
+    ...(m.current_limit_A !== null && { current_limit_A: m.current_limit_A }),
     gain_Nm_per_V: (ratio * m.torque_constant_Nm_per_A) / m.resistance_ohm,
     damping_Nms:
       ratio * ratio * ((m.torque_constant_Nm_per_A * m.back_emf_Vs_per_rad) / m.resistance_ohm + m.viscous_friction_Nms),
@@ -266,8 +302,9 @@ function hingeOf(
       angle,
     );
   const rateLimit = own.rate_limit_rad_per_s ?? Infinity,
-    refuses = own.at_limit === "refuse" || !isCommanded(kind);
-  return { name, kind, place, low, high, rateLimit, refuses, angle, rate: own.start_rate_rad_per_s };
+    refuses = own.at_limit === "refuse" || !(isCommanded(kind) || kind === "servo"),
+    rate = own.start_rate_rad_per_s;
+  return { name, kind, place, low, high, rateLimit, refuses, angle, rate, follows: "" };
 }
 
 function checkCommand(
@@ -283,6 +320,7 @@ function checkCommand(
       );
     return;
   }
+  if (kind === "servo") return;
   if ((own.rate_limit_rad_per_s ?? null) !== null)
     throw noEffect(
       `${place}.rate_limit_rad_per_s`,

@@ -1,7 +1,8 @@
 // One vehicle with hinges: made of a scene, stepped with an input held, read by its outputs.
 import { askFinite, askKeys, askNumber, askNumbers, askSteps, askTable } from "./checks.js";
 import { Handle } from "./handle.js";
-import { Commands, isBetween, isStopped } from "./hinge_commands.js";
+import { Commands, SlippingCommands, isBetween, isStopped } from "./hinge_commands.js";
+import { refusedForGround, slipsOn } from "./hinge_friction.js";
 import { InputReader, axleOf } from "./hinge_inputs.js";
 import { CARRIAGE, HINGE_KINDS, inTables, readHinges } from "./hinge_tables.js";
 import { Refused } from "./refused.js";
@@ -11,15 +12,20 @@ import { SceneSetter, inRad } from "./scene.js";
 
 const ALLOWED = 1e-9; // of the size of a start: what rounding may change of it
 const HINGED_START = ["velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
+const WHEELS_STAND = "wheel_speed_rad_per_s"; // of a start with speeds of wheels
 const WITHOUT_NUMBERS = ["name", "parent", "hinge"];
-const PER_WHEEL = /^(?:wheel|along|lateral|brake)_/;
+const PER_WHEEL = /^(?:wheel|along|lateral|brake|slip|contact|across|scrub)_/;
+const FIRST_OF_SLIPPING = "slip_along_m_per_s";
 const REACTIONS = ["wheel_torque_Nm", "along_N", "lateral_N", "brake_Nm", "hinge_torque_Nm", "hinge_force_N"];
 
 /** Sets all numbers of a scene with hinges in a robot. */
 class HingedSetter extends SceneSetter {
   /** @param {any} scene @param {import("./hinge_tables.js").Hung} found */
   setHinged(scene, found) {
-    checkIdeal(scene);
+    const slips = slipsOn(scene.ground);
+    if (!slips) checkIdeal(scene);
+    if (scene.initial !== undefined)
+      askKeys("initial", inRad("initial", scene.initial), [...HINGED_START, ...(slips ? [WHEELS_STAND] : [])]);
     const { body, caster, trailer, ...vehicle } = scene.vehicle;
     this.set({ ...scene, vehicle: { ...vehicle, wheel: found.wheels.map(({ table }) => table) } });
     const numbers = new Map([[CARRIAGE, 0], ...found.bodies.map(({ name }, k) => /** @type {const} */ ([name, k + 1]))]);
@@ -30,7 +36,10 @@ class HingedSetter extends SceneSetter {
       for (const [key, value] of Object.entries(each))
         if (!WITHOUT_NUMBERS.includes(key)) this.put(`vehicle.body[#].${key}`, k + 1, value);
     });
-    found.wheels.forEach((each, k) => this.put("vehicle.wheel[#].body", k + 1, numbers.get(each.body) ?? 0));
+    found.wheels.forEach(({ body, contact }, k) => {
+      this.put("vehicle.wheel[#].body", k + 1, numbers.get(body) ?? 0);
+      for (const [key, value] of Object.entries(contact)) this.put(`vehicle.wheel[#].${key}`, k + 1, value);
+    });
   }
 
   put(/** @type {string} */ path, /** @type {number} */ item, /** @type {number} */ value) {
@@ -41,8 +50,8 @@ class HingedSetter extends SceneSetter {
   velocity() {}
 }
 
-/** Refused for friction and limits of drives, which do not act on vehicles with hinges yet. */
-function checkIdeal(/** @type {any} */ { ground, vehicle, initial }) {
+/** Refused for what acts on ground with friction alone. */
+function checkIdeal(/** @type {any} */ { ground, vehicle }) {
   const paths = [
     ...Object.keys(ground ?? {})
       .filter((key) => !key.startsWith("slope_"))
@@ -52,25 +61,21 @@ function checkIdeal(/** @type {any} */ { ground, vehicle, initial }) {
       each.motor_circuit === undefined || each.motor_circuit === "driven" ? "" : `vehicle.wheel[${k + 1}].motor_circuit`,
     ).filter(Boolean),
   ];
-  if (paths.length)
-    throw new Refused(
-      paths[0],
-      "does not act on vehicles with hinges yet; take it out for a ground that holds every wheel",
-      "not yet",
-    );
-  if (initial !== undefined) askKeys("initial", inRad("initial", initial), HINGED_START);
+  if (paths.length) throw refusedForGround(paths[0]);
 }
 
 /** A vehicle with hinges at its start. Call free() when it is no longer needed: its memory is used again. */
 export class HingedRobot extends Handle {
   /** @type {any} what acts, as checked */
   #input = { plain: [], named: [], rates: {}, targets: {}, twist: undefined };
+  hasFriction = false; // of the ground: wheels may slip
 
   /** @param {import("./module.js").Module} module @param {any} scene @param {string} method @param {number} step_s */
   constructor(module, scene, method, step_s) {
     super(module);
     askTable("vehicle", scene.vehicle, "give an object with mass_kg and the vehicle's other keys");
-    const found = readHinges(scene.vehicle);
+    this.hasFriction = slipsOn(scene.ground);
+    const found = readHinges(scene.vehicle, this.hasFriction);
     this.hinges = found.hinges;
     this.bodies = found.hinges.map(({ name }) => name);
     this.parents = found.bodies.map(({ parent }) => this.bodies.indexOf(parent) + 1); // 0: the carriage
@@ -78,10 +83,13 @@ export class HingedRobot extends Handle {
     this.wheelCount = found.wheels.length;
     this.bodyCount = found.hinges.length;
     this.step_s = step_s;
-    this.ordered = new Commands(found.hinges, /** @type {any[]} */ (found.bodies), axleOf(found.wheels).x_m);
+    const Kind = this.hasFriction ? SlippingCommands : Commands;
+    this.pointCount = this.wheelCount + (scene.vehicle.support?.length ?? 0);
+    this.wheelsStand = Boolean(scene.initial?.[WHEELS_STAND]?.length);
+    this.ordered = new Kind(found.hinges, /** @type {any[]} */ (found.bodies), axleOf(found.wheels).x_m);
     this.reader = new InputReader(found.hinges, found.wheels, this.ordered);
     this.watched = found.hinges.flatMap((hinge) =>
-      ["free", "motor"].includes(hinge.kind) && isStopped(hinge) ? [hinge] : [],
+      !this.hasFriction && ["free", "motor"].includes(hinge.kind) && isStopped(hinge) ? [hinge] : [],
     );
     this.acting = this.ordered.rest();
     this.take(() => this.begin(scene, found, method));
@@ -98,7 +106,9 @@ export class HingedRobot extends Handle {
       if (count > most)
         throw new Refused(what, `${count} of them, but the core has room for ${most}; take some out`, "too many");
     const number = this.module.methods.find((each) => each.name === method)?.number ?? -1;
-    this.check(this.c.laconic_web_prepare(this.pointer, number, this.step_s));
+    if (this.hasFriction && method !== "auto")
+      throw new Refused("run.method", `${method} does not step wheels that may slip; give auto`, "no such method");
+    this.check(this.c.laconic_web_prepare(this.pointer, number, this.step_s, this.hasFriction ? 1 : 0));
     this.setStart(inRad("initial", scene.initial ?? {}));
     this.place();
   }
@@ -109,11 +119,8 @@ export class HingedRobot extends Handle {
       turn = askFinite("initial.yaw_rate_rad_per_s", yaw_rate_rad_per_s);
     this.put("initial.velocity_m_per_s[#]", velocity);
     this.put("initial.yaw_rate_rad_per_s[#]", [turn]);
-    const rates = this.rollingRates(velocity, turn);
-    this.put(
-      "initial.hinge_angle_rad[#]",
-      this.hinges.map(({ angle }) => angle),
-    );
+    const rates = this.hasFriction ? this.hinges.map(({ rate }) => rate) : this.rollingRates(velocity, turn);
+    this.putAngles(this.hinges.map(({ angle }) => angle));
     this.put("initial.hinge_rate_rad_per_s[#]", rates);
     this.startSize = Math.max(...[...velocity, turn, ...rates].map(Math.abs));
   }
@@ -140,12 +147,17 @@ export class HingedRobot extends Handle {
     values.forEach((value, k) => this.c.laconic_web_set(this.pointer, field, k + 1, value));
   }
 
+  putAngles(/** @type {number[]} */ angles) {
+    this.put("initial.hinge_angle_rad[#]", angles);
+  }
+
   /** Puts the vehicle at its start under the input. Rates of hinges begin with the first step, as after any jump. */
   place() {
     this.ordered.begin(this.hinges);
     this.act({ rates: this.ordered.prescribed.map(({ name }) => ({ name, rate: 0 })), twist: this.ordered.twist });
-    this.check(this.c.laconic_web_place(this.pointer));
-    if (!(this.c.laconic_web_changed(this.pointer) > ALLOWED * Math.max(1, this.startSize ?? 0))) return;
+    if (this.hasFriction) this.putAngles(this.hinges.map(({ name }) => this.ordered.angles.get(name) ?? 0));
+    this.check(this.c.laconic_web_place(this.pointer, this.wheelsStand ? 1 : 0));
+    if (this.hasFriction || !(this.c.laconic_web_changed(this.pointer) > ALLOWED * Math.max(1, this.startSize ?? 0))) return;
     const { velocity_body_m_per_s: near, yaw_rate_rad_per_s: turn } = this.outputs();
     throw new Refused(
       "initial.velocity_body_m_per_s",
@@ -192,12 +204,15 @@ export class HingedRobot extends Handle {
     return this.module.fields.get(`${name}[#]`);
   }
 
-  act(/** @type {{rates: {name: string, rate: number}[], twist: number[]}} */ { rates, twist }) {
-    const field = this.fieldOf("hinge_rate_rad_per_s");
-    for (const { name, rate } of rates)
-      this.c.laconic_web_set(this.pointer, field, this.bodies.indexOf(name) + 1, rate);
-    if (this.ordered.coordinated.length) this.put("twist[#]", twist);
-    this.acting = { rates, twist };
+  /** @param {import("./hinge_commands.js").Acting} acting */
+  act(acting) {
+    for (const { name, rate, angle = 0 } of acting.rates) {
+      const item = this.bodies.indexOf(name) + 1;
+      this.c.laconic_web_set(this.pointer, this.fieldOf("hinge_rate_rad_per_s"), item, rate);
+      if (this.hasFriction) this.c.laconic_web_set(this.pointer, this.fieldOf("hinge_angle_rad"), item, angle);
+    }
+    if (this.ordered.coordinated.length && !this.hasFriction) this.put("twist[#]", acting.twist);
+    this.acting = acting;
   }
 
   /** Takes steps with the input held. */
@@ -223,7 +238,7 @@ export class HingedRobot extends Handle {
   /** Prescribed hinges at a rate end where the core says. */
   takeAngles(/** @type {number} */ pointer) {
     const { prescribed, targets, angles } = this.ordered;
-    if (!prescribed.length) return;
+    if (!prescribed.length || this.hasFriction) return;
     const now = this.hingeAngles(pointer);
     for (const { name } of prescribed) if (!targets.has(name)) angles.set(name, now[name]);
   }
@@ -282,15 +297,19 @@ export class HingedRobot extends Handle {
   /** All outputs that follow from the motion at this moment: lists by wheel, objects by the names of hinges. */
   outputs() {
     const at = this.c.laconic_web_outputs(this.pointer);
-    const { velocity_m_per_s, ...rest } = this.read(at, (name) => !REACTIONS.includes(name));
+    const { velocity_m_per_s, ...rest } = this.read(at, (name, slips) =>
+      slips ? this.hasFriction : !REACTIONS.includes(name),
+    );
     return /** @type {Record<string, any>} */ ({ velocity_body_m_per_s: velocity_m_per_s, ...rest });
   }
 
   /** Forces that ground and hinges must deliver at this moment. @throws Refused where wheels allow no motion */
   reactions() {
+    if (this.hasFriction)
+      throw new Refused("reactions", "are those of ideal ground; read the forces in outputs()", "no reactions");
     this.check(this.c.laconic_web_reactions(this.pointer));
     const at = this.c.laconic_web_outputs(this.pointer);
-    const { hinge_force_N, hinge_torque_Nm, ...rest } = this.read(at, (name) => REACTIONS.includes(name));
+    const { hinge_force_N, hinge_torque_Nm, ...rest } = this.read(at, (name, slips) => !slips && REACTIONS.includes(name));
     const along = (/** @type {number} */ which) =>
       Object.fromEntries(this.bodies.map((name, k) => [name, hinge_force_N[2 * k + which]]));
     return {
@@ -301,17 +320,22 @@ export class HingedRobot extends Handle {
     };
   }
 
-  read(/** @type {number} */ at, /** @type {(name: string) => boolean} */ isWanted) {
+  read(/** @type {number} */ at, /** @type {(name: string, ofSlipping: boolean) => boolean} */ isWanted) {
     /** @type {Record<string, any>} */
     const found = {};
-    for (const { name, offset, count } of this.module.outputs)
-      if (isWanted(name)) found[name] = this.shaped(name, this.module.reals(at + offset, count));
+    let ofSlipping = false;
+    for (const { name, offset, count } of this.module.outputs) {
+      ofSlipping ||= name === FIRST_OF_SLIPPING;
+      if (isWanted(name, ofSlipping)) found[name] = this.shaped(name, this.module.reals(at + offset, count));
+    }
     return found;
   }
 
   shaped(/** @type {string} */ name, /** @type {number[]} */ values) {
     if (values.length === 1) return values[0];
     if (name === "velocity_m_per_s" || name === "hinge_force_N") return values;
+    if (name === "normal_N") return values.slice(0, this.pointCount);
+    if (name === "motor_current_A" || name === "drive_limit") return values.slice(0, this.wheelCount + this.bodyCount);
     if (PER_WHEEL.test(name)) return values.slice(0, this.wheelCount);
     return Object.fromEntries(this.bodies.map((each, k) => [each, values[k]]));
   }

@@ -28,12 +28,33 @@ export interface HingeMotor {
   gear_ratio: number;
   viscous_friction_Nms?: number;
   rotor_inertia_kgm2?: number;
+  current_limit_A?: number;
+}
+
+/** Of a wheel on ground with friction. */
+export interface Contact {
+  load_N?: number;
+  scrub_radius_m?: number;
+  scrub_fade_m?: number;
+  creep?: number;
+}
+
+/** Of a hinge on ground with friction: servo, or loop of its motor. */
+export interface Turned {
+  com_z_m?: number;
+  dry_friction_Nm?: number;
+  servo_gain_Nm_per_rad?: number;
+  servo_damping_Nms?: number;
+  servo_limit_Nm?: number;
+  loop_V_per_rad?: number;
+  loop_Vs_per_rad?: number;
+  control_period_s?: number;
 }
 
 /** A wheel of the carriage or of the body that it names. A steered one may have no axle: it then rolls ahead. */
-export interface HingedWheel extends Wheel, HingeCommandLimits {
+export interface HingedWheel extends Wheel, HingeCommandLimits, Contact, Turned {
   body?: string;
-  steered?: "coordinated" | "prescribed" | "motor";
+  steered?: "coordinated" | "prescribed" | "motor" | "servo";
   name?: string;
   scrub_m?: number;
   mass_kg?: number;
@@ -44,7 +65,9 @@ export interface HingedWheel extends Wheel, HingeCommandLimits {
 }
 
 /** What a caster and a trailer have. */
-export interface Towed extends HingeLimits {
+export interface Towed extends HingeLimits, Contact {
+  com_z_m?: number;
+  dry_friction_Nm?: number;
   name?: string;
   parent?: string;
   radius_m: number;
@@ -72,7 +95,8 @@ export interface Trailer extends Towed {
 }
 
 /** Any body on a vertical hinge. */
-export interface Body extends HingeCommandLimits {
+export interface Body extends HingeCommandLimits, Turned {
+  hitch?: boolean;
   name: string;
   parent?: string;
   hinge: "free" | "motor" | "prescribed" | "coordinated";
@@ -91,7 +115,7 @@ export interface Body extends HingeCommandLimits {
 }
 
 /** Mass, inertia and centre of mass are those of the carriage alone with its own wheels. */
-export interface HingedVehicle extends Omit<Vehicle, "wheel" | "drive"> {
+export interface HingedVehicle extends Omit<Vehicle, "wheel"> {
   wheel?: HingedWheel[];
   caster?: Caster[];
   trailer?: Trailer[];
@@ -101,7 +125,8 @@ export interface HingedVehicle extends Omit<Vehicle, "wheel" | "drive"> {
 /** A scene with the keys of its TOML file. */
 export interface HingedScene extends Omit<Scene, "vehicle" | "ground" | "run"> {
   vehicle: HingedVehicle;
-  ground?: Pick<Ground, "slope_rad" | "slope_deg" | "slope_heading_rad" | "slope_heading_deg">;
+  /** With friction_coefficient wheels may slip; some keys of hinges and wheels act there alone. */
+  ground?: Ground;
   run?: { step_s?: number; method?: MethodName };
 }
 
@@ -144,6 +169,37 @@ export interface HingedOutputs {
   wheel_speed_rad_per_s: number[];
   wheel_angle_rad: number[];
   energy_J: number;
+  /** From here on of ground with friction alone; docs/signals.md names them. Forces are those of the ground on wheels. */
+  slip_along_m_per_s?: number[];
+  slip_across_m_per_s?: number[];
+  /** 0 sticks or rolls, 1 slips, 2 has lifted. */
+  contact_state?: number[];
+  along_N?: number[];
+  across_N?: number[];
+  scrub_Nm?: number[];
+  /** Of wheels, then of supports. */
+  normal_N?: number[];
+  wheel_torque_Nm?: number[];
+  hinge_torque_Nm?: ByName;
+  friction_torque_Nm?: ByName;
+  stop_torque_Nm?: ByName;
+  /** Of wheels, then of hinges. */
+  motor_current_A?: number[];
+  drive_limit?: number[];
+  supply_current_A?: number;
+  supply_voltage_V?: number;
+  spring_energy_J?: number;
+  supply_energy_J?: number;
+  outer_work_J?: number;
+  servo_work_J?: number;
+  slip_loss_J?: number;
+  scrub_loss_J?: number;
+  axle_loss_J?: number;
+  hinge_loss_J?: number;
+  stop_loss_J?: number;
+  motor_loss_J?: number;
+  supply_loss_J?: number;
+  numerical_loss_J?: number;
 }
 
 /** Forces that ground and hinges must deliver. */
@@ -188,7 +244,7 @@ export class HingedRobot {
   /** @throws Refused where a step cannot be taken or a limit refuses; the steps before it were */
   run(steps: number): void;
   outputs(): HingedOutputs;
-  /** @throws Refused where the wheels allow no motion */
+  /** @throws Refused where the wheels allow no motion, and where they may slip */
   reactions(): HingedReactions;
   free(): void;
 }

@@ -1,7 +1,6 @@
 // One robot: made of a scene, stepped with an input held, read by its outputs.
-import { askFinite, askKeys, askNumber, askSteps, askTable, toldOf } from "./checks.js";
+import { PLAIN_INPUTS, askFinite, askKeys, askNumber, askSteps, askTable, plainValues, toldOf } from "./checks.js";
 import { Handle } from "./handle.js";
-import { PLAIN_INPUTS, plainValues } from "./inputs.js";
 import { Refused } from "./refused.js";
 import { SceneSetter } from "./scene.js";
 

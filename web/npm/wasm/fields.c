@@ -1,4 +1,5 @@
-/* A number of a robot by its field and item: the table follows from the lists of vehicle.h and articulated.h. */
+/* A number of a robot by its field and item: the table follows from the lists of vehicle.h, articulated.h
+ * and articulated_friction.h. */
 #include "web.h"
 
 typedef struct place {
@@ -25,16 +26,19 @@ typedef struct place {
 #define PLACE_INPUT(member) IN_ROBOT(input.member), 0, 0
 #define PLACE_MOTOR(member) IN_ROBOT(motor.member), 0, 0
 #ifdef LACONIC_WEB_HINGES
-#define PLACE_BODY(member) IN_ROBOT(hinged.body[0].member), sizeof(laconic_body), LACONIC_MAX_BODIES
-#define PLACE_WHEEL_OF_BODY(member) IN_ROBOT(hinged.wheel_##member[0]), sizeof(int32_t), LACONIC_MAX_WHEELS
-#define PLACE_BODY_COUNT(member) IN_ROBOT(hinged.member##_count), 0, 0
-#define PLACE_HINGE(member) IN_ROBOT(hinged_input.member), REALS_IN(hinged_input.member)
-#define PLACE_HINGE_START(member) IN_ROBOT(hinged_start.member), REALS_IN(hinged_start.member)
+#define PLACE_BODY(member) IN_ROBOT(tree.hinged.body[0].member), sizeof(laconic_body), LACONIC_MAX_BODIES
+#define PLACE_WHEEL_OF_BODY(member) IN_ROBOT(tree.hinged.wheel_##member[0]), sizeof(int32_t), LACONIC_MAX_WHEELS
+#define PLACE_BODY_COUNT(member) IN_ROBOT(tree.hinged.member##_count), 0, 0
+#define PLACE_HINGE(member) IN_ROBOT(tree_input.hinged.member), REALS_IN(tree_input.hinged.member)
+#define PLACE_HINGE_START(member) IN_ROBOT(tree_start.hinged.member), REALS_IN(tree_start.hinged.member)
+#define PLACE_TREE_HINGE(member) IN_ROBOT(tree.hinge[0].member), sizeof(laconic_tree_hinge), LACONIC_MAX_BODIES
+#define PLACE_TREE_WHEEL(member) IN_ROBOT(tree.wheel[0].member), sizeof(laconic_tree_wheel), LACONIC_MAX_WHEELS
+#define PLACE_TREE_INPUT(member) IN_ROBOT(tree_input.member), REALS_IN(tree_input.member)
 #define OF_HINGES(X) \
     LACONIC_BODY_FIELDS(X, BODY) \
     LACONIC_WHEEL_BODY_FIELD(X, WHEEL_OF_BODY) \
     LACONIC_BODY_COUNT_FIELD(X, BODY_COUNT) \
-    LACONIC_HINGE_INPUT_FIELDS(X, HINGE) LACONIC_HINGE_START_FIELDS(X, HINGE_START)
+    LACONIC_HINGE_INPUT_FIELDS(X, HINGE) LACONIC_HINGE_START_FIELDS(X, HINGE_START) LACONIC_TREE_FIELDS(X)
 #else
 #define OF_HINGES(X)
 #endif

@@ -1,4 +1,4 @@
-/* What the core calls its fields, methods and refusals. */
+/* What the core calls its fields and methods, and the text of a refusal. */
 #include "web.h"
 
 WEB_EXPORT(laconic_web_field_path) const char *laconic_web_field_path(int32_t field) {
@@ -55,3 +55,22 @@ WEB_EXPORT(laconic_web_status_name) const char *laconic_web_status_name(int32_t 
 
 /* laconic_arithmetic of the engine that runs this module; 0: sound. */
 WEB_EXPORT(laconic_web_self_test) int32_t laconic_web_self_test(void) { return (int32_t)laconic_self_test(); }
+
+laconic_status laconic_web_refuse(laconic_web_robot *robot) {
+    laconic_message(&robot->why, robot->text, sizeof robot->text);
+    return robot->why.status;
+}
+
+WEB_EXPORT(laconic_web_text) const char *laconic_web_text(const laconic_web_robot *robot) { return robot->text; }
+WEB_EXPORT(laconic_web_refused_status) int32_t laconic_web_refused_status(const laconic_web_robot *robot) {
+    return (int32_t)robot->why.status;
+}
+WEB_EXPORT(laconic_web_refused_field) int32_t laconic_web_refused_field(const laconic_web_robot *robot) {
+    return (int32_t)robot->why.field;
+}
+WEB_EXPORT(laconic_web_refused_value) double laconic_web_refused_value(const laconic_web_robot *robot) {
+    return robot->why.value;
+}
+WEB_EXPORT(laconic_web_refused_limit) double laconic_web_refused_limit(const laconic_web_robot *robot) {
+    return robot->why.limit;
+}

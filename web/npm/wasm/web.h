@@ -1,6 +1,6 @@
 /* The core as JavaScript sees it: one struct a robot, numbers set by the core's own list of fields. With
  * LACONIC_WEB_HINGES these files make the module of vehicles with hinges (hinged.c), without it that of all others
- * (robot.c, outputs.c, wanted.c, hash.c).
+ * (robot.c, wanted.c, hash.c).
  *
  * JavaScript has no structs. It names a number of the robot by its field (vehicle.h) and item, as frames on the wire
  * do, and reads outputs by the offsets that laconic_web_output() tells. Every pointer is an offset in the module's
@@ -9,7 +9,7 @@
 #define LACONIC_WEB_H
 
 #ifdef LACONIC_WEB_HINGES
-#include "laconic/articulated.h"
+#include "laconic/articulated_friction.h"
 #else
 #include "laconic/laconic.h"
 #endif
@@ -18,12 +18,14 @@
 #define WEB_EXPORT(name) __attribute__((export_name(#name), used))
 
 #ifdef LACONIC_WEB_HINGES
-#define LACONIC_WEB_FIELD_COUNT LACONIC_ARTICULATED_FIELD_COUNT
+#define LACONIC_WEB_FIELD_COUNT LACONIC_TREE_FIELD_COUNT
 
-/* Where JavaScript finds the outputs. */
+/* Where JavaScript finds the outputs: all but the motion, and the reactions, where wheels may slip alone. */
 typedef struct laconic_web_hinged_outputs {
     laconic_articulated_motion motion;
     laconic_articulated_reactions reactions;
+    laconic_tree_outputs tree;
+    laconic_real contact_state[LACONIC_MAX_WHEELS], drive_limit[LACONIC_TREE_AXES];
 } laconic_web_hinged_outputs;
 #else
 #define LACONIC_WEB_FIELD_COUNT LACONIC_FIELD_COUNT
@@ -38,13 +40,17 @@ typedef struct laconic_web_robot {
     laconic_start start;                   /* with hinges: place and heading alone */
     laconic_input input;                   /* of wheels and carriage               */
 #ifdef LACONIC_WEB_HINGES
-    laconic_articulated_vehicle hinged; /* bodies, and the bodies of wheels; its base is made of the vehicle */
-    laconic_articulated_start hinged_start;
-    laconic_articulated_input hinged_input; /* of hinges; its base is made of the input */
+    laconic_tree_vehicle tree; /* bodies, and the bodies of wheels; its base is made of the vehicle */
+    laconic_tree_start tree_start;
+    laconic_tree_input tree_input; /* of hinges; its base is made of the input       */
+    bool slips;                    /* on ground with friction: the members "tree" act */
     laconic_real twist[3], twist_before[3]; /* at the end of the last step, and before the last run */
     laconic_articulated_model model;
     laconic_articulated_integrator integrator;
     laconic_articulated_state state, before; /* now, and before the last run */
+    laconic_tree_model tree_model;
+    laconic_tree_state tree_state;
+    double step_s;
     laconic_real changed_m_per_s;            /* by which the start was moved to a motion that is allowed */
     double steps, steps_before;
     laconic_web_hinged_outputs outputs;

@@ -81,11 +81,14 @@ function frictionOf(/** @type {any} */ scene, /** @type {any} */ wheel) {
   return wheel.friction_coefficient ?? scene.ground?.friction_coefficient ?? scene.vehicle.friction_coefficient ?? 0;
 }
 
-/** Grip margin as the core gives it, and a bar for each wheel: force over the friction available. */
-export function showGrip(/** @type {any} */ scene, /** @type {any} */ out) {
-  const isJudged = scene.vehicle.wheel.some((/** @type {any} */ wheel) => frictionOf(scene, wheel) > 0);
-  const margin = byId("margin");
-  margin.textContent = isJudged ? `${fixed(out.no_slip_margin_N, 1)} N` : "–";
+/** Grip margin as the core gives it, with hinges what slip has cost, and a bar for each wheel: force over the friction
+ * available. */
+export function showGrip(/** @type {any} */ { scene, layout }, /** @type {any} */ out) {
+  const wheels = layout ? layout.parts.flatMap((/** @type {any} */ part) => part.wheels) : scene.vehicle.wheel;
+  const isJudged = layout || wheels.some((/** @type {any} */ wheel) => frictionOf(scene, wheel) > 0);
+  const margin = layout ? `${shown(out.slip_loss_J)} J` : `${fixed(out.no_slip_margin_N, 1)} N`;
+  byId("margin").textContent = isJudged ? margin : "–";
+  byId("margin-of").textContent = layout ? "lost by slip" : "margin";
   const isLost = out.contact_state
     ? out.contact_state.some((/** @type {number} */ s) => s > 0)
     : out.no_slip_margin_N < -1e-9;
@@ -94,14 +97,14 @@ export function showGrip(/** @type {any} */ scene, /** @type {any} */ out) {
     : isLost
       ? lossOf(out)
       : "every wheel holds";
-  byId("grip-note").classList.toggle("warn", isJudged && isLost);
+  byId("grip-note").classList.toggle("warn", Boolean(isJudged && isLost));
   const list = byId("grip");
-  const count = scene.vehicle.wheel.length;
-  while (list.children.length > count) list.lastChild.remove();
-  while (list.children.length < count) list.append(gripRow(list.children.length));
-  scene.vehicle.wheel.forEach((/** @type {any} */ wheel, /** @type {number} */ i) =>
-    showWheelGrip(list.children[i], out, i, frictionOf(scene, wheel)),
-  );
+  while (list.children.length > wheels.length) list.lastChild.remove();
+  while (list.children.length < wheels.length) list.append(gripRow(list.children.length));
+  wheels.forEach((/** @type {any} */ wheel, /** @type {number} */ k) => {
+    const i = wheel.number ?? k;
+    showWheelGrip(list.children[i], out, i, frictionOf(scene, wheel));
+  });
 }
 
 function lossOf(/** @type {any} */ out) {
@@ -129,11 +132,14 @@ function showWheelGrip(
   /** @type {number} */ i,
   /** @type {number} */ friction,
 ) {
-  const force = Math.hypot(out.along_N[i], out.lateral_N[i]),
+  const force = Math.hypot(out.along_N[i], (out.lateral_N ?? out.across_N)[i]),
     held = friction * out.normal_N[i];
   const share = held > 0 ? force / held : 0;
   row.children[1].firstChild.style.width = `${Math.min(100, 100 * share).toFixed(1)}%`;
   row.classList.toggle("lost", out.contact_state ? out.contact_state[i] > 0 : share > 1);
   const grip = held > 0 && Number.isFinite(share) ? `${fixed(100 * Math.min(share, 9.99), 0)} %` : "–";
-  row.children[2].textContent = `${fixed(out.wheel_speed_rad_per_s[i], 1)} rad/s, ${grip}`;
+  const speed = out.across_N
+    ? `slip ${fixed(Math.hypot(out.slip_along_m_per_s[i], out.slip_across_m_per_s[i]))} m/s`
+    : `${fixed(out.wheel_speed_rad_per_s[i], 1)} rad/s`;
+  row.children[2].textContent = `${speed}, ${grip}`;
 }

@@ -82,8 +82,14 @@ export function drawBody(
   /** @type {any} */ vehicle,
   /** @type {any} */ style,
 ) {
+  drawOutline(pen, corners(vehicle), style);
+  drawNose(pen, reach(vehicle), style);
+}
+
+/** What encloses a body. @param {any} pen @param {number[][]} points @param {any} style */
+export function drawOutline(pen, points, style) {
   pen.beginPath();
-  for (const [x, y] of corners(vehicle)) pen.lineTo(x, y);
+  for (const [x, y] of points) pen.lineTo(x, y);
   pen.closePath();
   pen.lineJoin = "round";
   if (style.fill) {
@@ -95,7 +101,6 @@ export function drawBody(
   pen.setLineDash(style.dash ?? []);
   pen.stroke();
   pen.setLineDash([]);
-  drawNose(pen, reach(vehicle), style);
 }
 
 export function drawNose(/** @type {CanvasRenderingContext2D} */ pen, /** @type {number} */ size, /** @type {any} */ style) {
@@ -104,6 +109,12 @@ export function drawNose(/** @type {CanvasRenderingContext2D} */ pen, /** @type 
   pen.lineTo(size * 0.38, 0);
   pen.lineTo(size * 0.22, -size * 0.14);
   pen.stroke();
+}
+
+/** How a wheel is drawn: in the colour of warnings where it slips or has lifted. */
+export function rimOf(/** @type {any} */ out, /** @type {number} */ i, /** @type {number} */ px, /** @type {any} */ colour) {
+  const isLost = out.contact_state?.[i] > 0;
+  return { tread: colour.card, stroke: isLost ? colour.warn : colour.ink, width: isLost ? 2 * px : px };
 }
 
 /** One wheel from above: its tread, and the axes of its rollers where they touch the ground, moved on by its angle. */

@@ -55,6 +55,7 @@ export function slips(/** @type {any} */ scene) {
 }
 
 const OF_FRICTION = ["friction_coefficient", "roller_drag", "axle_friction_Nm", "motor_circuit"];
+const OF_SLIPPING_HINGES = /^(servo_|loop_|control_|load_|scrub_(radius|fade)|creep|hitch$|dry_|com_z_m)/;
 
 /** The same robot on ideal ground, with motors without limits; a slope stays. */
 export function onIdealGround(/** @type {any} */ scene) {
@@ -64,6 +65,9 @@ export function onIdealGround(/** @type {any} */ scene) {
   delete ideal.vehicle.drive;
   if (friction_coefficient !== undefined) ideal.vehicle.friction_coefficient = friction_coefficient;
   for (const wheel of ideal.vehicle.wheel) for (const key of OF_FRICTION) delete wheel[key];
+  for (const form of ["wheel", "body", "caster", "trailer"])
+    for (const each of ideal.vehicle[form] ?? [])
+      for (const key of Object.keys(each)) if (OF_SLIPPING_HINGES.test(key)) delete each[key];
   if (ideal.initial) delete ideal.initial.wheel_speed_rad_per_s;
   return ideal;
 }

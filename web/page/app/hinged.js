@@ -2,6 +2,7 @@
 import { axleOf } from "laconic/hinge_inputs";
 import { CARRIAGE, readHinges } from "laconic/hinge_tables";
 import { hingesIn, inPlace } from "laconic/scene";
+import { slips } from "./facts.js";
 
 const FOLDED_RAD = Math.PI / 2;
 const TRAIL_POINTS = 3000;
@@ -32,6 +33,7 @@ export class Cores {
   }
 
   methodsOf(/** @type {any} */ scene) {
+    if (hasHinges(scene) && slips(scene)) return [{ name: "auto", order: 1 }];
     return (hasHinges(scene) ? this.hinged : this.rigid).methods;
   }
 }
@@ -42,7 +44,7 @@ class Hung {
     this.robot = robot;
     this.centre = centreOf(vehicle);
     this.wheelCount = robot.wheelCount;
-    this.hasFriction = false;
+    this.hasFriction = robot.hasFriction;
   }
 
   get commands() {
@@ -92,9 +94,10 @@ function centreOf(/** @type {any} */ { mass_kg, com_x_m = 0, com_y_m = 0, payloa
   ];
 }
 
-/** Where everything is, the carriage first. @param {any} vehicle @returns {Layout} */
-export function layoutOf(vehicle) {
-  const { bodies, hinges, wheels } = readHinges(vehicle),
+/** Where everything is, the carriage first. @param {any} scene @returns {Layout} */
+export function layoutOf(scene) {
+  const { vehicle } = scene,
+    { bodies, hinges, wheels } = readHinges(vehicle, slips(scene)),
     names = [CARRIAGE, ...hinges.map(({ name }) => name)];
   /** @type {Part[]} */
   const parts = [partOf(CARRIAGE, CARRIAGE, -1, undefined, [0, 0])];
@@ -195,7 +198,7 @@ export function steeringBase(/** @type {Layout} */ { parts, axle }) {
  * steers by one of them alone. */
 export function byCurvature(/** @type {any} */ scene, /** @type {import("./drive.js").Change[]} */ changes) {
   if (!hasHinges(scene) || !changes.some(({ signals }) => "steering_angle_rad" in signals)) return changes;
-  const base = steeringBase(layoutOf(scene.vehicle));
+  const base = steeringBase(layoutOf(scene));
   return changes.map(({ t_s, signals: { steering_angle_rad: angle = 0, ...signals } }) => ({
     t_s,
     signals: { ...signals, steering_curvature_per_m: Math.tan(angle) / base },

@@ -1,5 +1,5 @@
 // How a robot with hinges looks from above, and what the panel tells of its hinges.
-import { drawNose, drawWheel, hull, ring } from "./drawing.js";
+import { drawNose, drawOutline, drawWheel, hull, rimOf, ring } from "./drawing.js";
 import { DRAWBAR, middle } from "./hinged.js";
 import { byId, element, fixed, shown } from "./texts.js";
 
@@ -10,7 +10,7 @@ const HALF_TURN = Math.PI;
 
 /** The carriage in its own frame, one unit a metre. */
 export function drawCarriage(/** @type {any} */ pen, /** @type {any} */ layout, /** @type {any} */ style) {
-  drawOutline(pen, layout.parts[0].corners, style);
+  drawOutline(pen, outline(layout.parts[0].corners), style);
   const front = Math.max(...layout.parts[0].corners.map((/** @type {number[]} */ [x, , r]) => x + 0.3 * r));
   pen.save();
   pen.translate(front - 0.5 * layout.size, 0);
@@ -18,18 +18,8 @@ export function drawCarriage(/** @type {any} */ pen, /** @type {any} */ layout, 
   pen.restore();
 }
 
-function drawOutline(/** @type {any} */ pen, /** @type {number[][]} */ corners, /** @type {any} */ style) {
-  pen.beginPath();
-  for (const [x, y] of hull(corners.flatMap(([x, y, r]) => ring(x, y, Math.max(r, 1e-3))))) pen.lineTo(x, y);
-  pen.closePath();
-  pen.lineJoin = "round";
-  if (style.fill) {
-    pen.fillStyle = style.fill;
-    pen.fill();
-  }
-  pen.strokeStyle = style.stroke;
-  pen.lineWidth = style.width;
-  pen.stroke();
+function outline(/** @type {number[][]} */ corners) {
+  return hull(corners.flatMap(([x, y, r]) => ring(x, y, Math.max(r, 1e-3))));
 }
 
 /** All bodies in the world: outlines below, wheels and hinges above them. */
@@ -67,7 +57,7 @@ function inFrame(
 
 /** A frame; a trailer has a drawbar. */
 function drawTowed(/** @type {any} */ pen, /** @type {Part} */ part, /** @type {any} */ style) {
-  drawOutline(pen, part.corners, style);
+  drawOutline(pen, outline(part.corners), style);
   if (part.form !== "trailer") return;
   pen.beginPath();
   pen.moveTo(0, 0);
@@ -93,8 +83,10 @@ function drawRolling(
       pen.lineTo(x_m, y_m);
       pen.stroke();
     }
-  const style = { tread: colour.card, stroke: colour.ink, width: px };
-  for (const wheel of part.wheels) drawWheel(pen, vehicle, wheel, out.wheel_angle_rad[wheel.number], style);
+  for (const wheel of part.wheels) {
+    const { number } = wheel;
+    drawWheel(pen, vehicle, wheel, out.wheel_angle_rad[number], rimOf(out, number, px, colour));
+  }
   if (part.parent < 0) return;
   pen.beginPath();
   pen.arc(0, 0, 2.5 * px, 0, 2 * Math.PI);

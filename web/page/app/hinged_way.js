@@ -21,7 +21,7 @@ export class HingedWay {
   constructor(/** @type {any} */ scene, /** @type {any} */ robot) {
     this.robot = robot;
     this.scene = scene;
-    this.layout = layoutOf(scene.vehicle);
+    this.layout = layoutOf(scene);
     this.parts = this.layout.parts;
     this.volts = mostVoltage(scene);
     this.wheels = this.parts.flatMap((part, of) => part.wheels.map((wheel) => ({ ...wheel, of })));
@@ -30,7 +30,7 @@ export class HingedWay {
     this.isSwerve = this.coordinated.length > 0 && !hasAxle;
     this.steered = this.coordinated.length
       ? undefined
-      : this.parts.find(({ hinge }) => hinge?.kind === "prescribed" || hinge?.kind === "motor");
+      : this.parts.find(({ hinge }) => ["prescribed", "motor", "servo"].includes(hinge?.kind));
     this.isSteered = !this.isSwerve && Boolean(this.steered || this.coordinated.length);
     this.hasMotors = this.wheels.some((wheel) => this.idle(wheel) > 0);
     this.twist = [1, 0, 0];
@@ -189,14 +189,16 @@ export class HingedWay {
     if (this.usesAngle(hinge)) return { [`steering_angle_rad[${name}]`]: angle };
     const left = angle - this.robot.outputs().hinge_angle_rad[name],
       rate = Math.abs(left) < SETTLED_RAD ? 0 : FOLLOWS_PER_S * left;
-    if (hinge.kind === "prescribed") return { [`steering_rate_rad_per_s[${name}]`]: clamped(rate, mostRate(hinge)) };
+    if (hinge.kind === "prescribed" || hinge.follows) return { [`steering_rate_rad_per_s[${name}]`]: clamped(rate, mostRate(hinge)) };
     return { [`hinge_voltage_V[${name}]`]: clamped(rate / this.hingeIdle(hinge), this.hingeVolts(name)) };
   }
 
-  /** Angles are followed within a limit of rate; a scene that gives rates keeps to them, as one hinge has one command. */
-  usesAngle(/** @type {any} */ { name, kind, rateLimit }) {
+  /** Angles are followed within a limit of rate; a scene that gives rates keeps to them, as one hinge has one command.
+   * Servos and position loops take angles. */
+  usesAngle(/** @type {any} */ { name, kind, rateLimit, follows }) {
     const rate = `steering_rate_rad_per_s[${name}]`,
       isByRate = this.scene.input.some((/** @type {any} */ { signal }) => signal === rate);
+    if (follows) return follows === "angle";
     return kind === "prescribed" && Number.isFinite(rateLimit) && !isByRate;
   }
 
@@ -249,9 +251,9 @@ export class HingedWay {
     if (this.coordinated.length) return [this.curvatureKnob()];
     return this.parts.flatMap(({ name, hinge }) => {
       const about = { id: `hinge-${name}`, label: `Hinge ${name}` };
-      if (hinge?.kind === "motor")
+      if (hinge?.kind === "motor" && !hinge.follows)
         return [{ ...about, unit: "V", most: this.hingeVolts(name), ...plainKnob(`hinge_voltage_V[${name}]`) }];
-      if (hinge?.kind !== "prescribed") return [];
+      if (hinge?.kind !== "prescribed" && !hinge?.follows) return [];
       return this.usesAngle(hinge)
         ? [{ ...about, unit: "°", scale: DEGREES, most: this.mostAngle(), ...plainKnob(`steering_angle_rad[${name}]`) }]
         : [{ ...about, ...inDegreesPerS, most: mostRate(hinge), ...plainKnob(`steering_rate_rad_per_s[${name}]`) }];
@@ -275,7 +277,7 @@ export class HingedWay {
   /** A curve at half the speed from the start, where errors of methods show. @returns {Record<string, number>} */
   usual() {
     const half = this.most.map((value) => value / 2);
-    if (this.isSwerve || !this.steered) return this.driven(half);
+    if (this.isSwerve || !this.steered || this.steered.hinge.follows) return this.driven(half);
     const { name, hinge } = this.steered,
       volts = perWheel("voltage_V", this.voltages({ x: half[0], y: 0, turn: 0 }, this.anglesAt(0))),
       rate = (this.sign * half[2]) / CURVE_S;

@@ -76,7 +76,8 @@ class Page {
     this.fields.fit(this.scene);
     if (!hinged) this.editor.fit(this.scene);
     byId("ideal-row").hidden = !slips(this.scene);
-    for (const id of ["grip-panel", "friction-row", "error-line"]) byId(id).hidden = hinged;
+    for (const id of ["friction-row", "error-line"]) byId(id).hidden = hinged;
+    byId("grip-panel").hidden = hinged && !slips(this.scene);
     byId("hinges-panel").hidden = !hinged;
     byId("draw-view").disabled = hinged;
     byId("draw-view").parentElement.title = hinged ? "Not for robots with hinges: edit the exported scene" : "";

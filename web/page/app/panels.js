@@ -12,7 +12,7 @@ export function showPanels(/** @type {any} */ page) {
   if (page.controls.mode === "scene") page.controls.follow(page.run.signals);
   showNumbers(out);
   if (page.run.layout) showHinges(page.run, out);
-  else showGrip(page.run.scene, out);
+  if (!page.run.layout || page.run.main.robot.hasFriction) showGrip(page.run, out);
   drawVelocities(page.run.history);
   byId("error-now").textContent = length(page.run.error_m());
   byId("error-of").textContent = page.run.reference

@@ -51,7 +51,7 @@ export class Run {
     this.fleet = [];
     if (how.fleet) this.addFleet();
     this.parts = Math.max(1, Math.ceil(how.step_s / REFERENCE_STEP_S - 1e-9));
-    this.layout = hasHinges(scene) ? layoutOf(scene.vehicle) : undefined;
+    this.layout = hasHinges(scene) ? layoutOf(scene) : undefined;
     this.trails = this.layout && new Trails(this.layout);
     // Commands of hinges end with a step, so finer steps would have others.
     this.reference = this.layout ? undefined : referenceOf(laconic, scene, how.step_s / this.parts);
@@ -101,7 +101,7 @@ export class Run {
   set(/** @type {Record<string, number>} */ signals) {
     if (sameSignals(signals, this.signals)) return;
     const input = inputOf(signals, this.main.robot.wheelCount);
-    for (const { robot } of this.actors) robot.setInput(input);
+    for (const actor of this.actors) this.beside(actor, (robot) => robot.setInput(input));
     this.reference?.robot.setInput(input);
     this.signals = { ...signals };
     const last = this.changes.at(-1);
@@ -129,8 +129,21 @@ export class Run {
     } finally {
       const taken = robot.steps - begin;
       this.steps += taken;
-      for (const other of others) other.robot.run(taken);
+      for (const other of others) this.beside(other, (robot) => robot.run(taken));
       this.reference?.robot.run(taken * this.parts);
+    }
+  }
+
+  /** The robot without slip may refuse a start or a stop that the other takes: it ends there alone.
+   * @param {Actor} actor @param {(robot: any) => void} act */
+  beside(actor, act) {
+    try {
+      act(actor.robot);
+    } catch (refused) {
+      if (actor !== this.ideal) throw refused;
+      this.idealRefused = /** @type {Error} */ (refused).message;
+      this.ideal.robot.free();
+      this.ideal = undefined;
     }
   }
 

@@ -1,5 +1,5 @@
 // The world from above: paths, robots, grid. World x points up and y to the left, as a robot at its start sees them.
-import { colours, drawBody, drawWheel, reach, surface } from "./drawing.js";
+import { colours, drawBody, drawWheel, reach, rimOf, surface } from "./drawing.js";
 import { drawCarriage, drawHung } from "./hinged_view.js";
 import { fixed } from "./texts.js";
 
@@ -59,7 +59,7 @@ export class Stage {
         else drawBody(pen, actor.scene.vehicle, style);
       });
     for (const { path } of run.trails?.all ?? []) drawPath(pen, path, colour.soft, 1.5 * px, []);
-    if (run.ideal) this.drawIdeal(pen, run.ideal, px, colour);
+    if (run.ideal) this.drawIdeal(pen, run, px, colour);
     drawPath(pen, run.main.path, colour.accent, 2 * px, []);
     if (run.layout) drawHung(pen, run.layout, out, px, colour);
     placed(pen, out, () => {
@@ -68,10 +68,11 @@ export class Stage {
     });
   }
 
-  drawIdeal(/** @type {any} */ pen, /** @type {any} */ ideal, /** @type {number} */ px, /** @type {any} */ colour) {
+  drawIdeal(/** @type {any} */ pen, /** @type {any} */ { ideal, layout }, /** @type {number} */ px, /** @type {any} */ colour) {
     drawPath(pen, ideal.path, colour.soft, 1.5 * px, [5 * px, 4 * px]);
+    const style = { stroke: colour.soft, width: 1.5 * px, dash: [5 * px, 4 * px] };
     placed(pen, ideal.robot.outputs(), () =>
-      drawBody(pen, ideal.scene.vehicle, { stroke: colour.soft, width: 1.5 * px, dash: [5 * px, 4 * px] }),
+      layout ? drawCarriage(pen, layout, style) : drawBody(pen, ideal.scene.vehicle, style),
     );
   }
 
@@ -84,12 +85,7 @@ export class Stage {
   ) {
     drawBody(pen, vehicle, { fill: colour.wash, stroke: colour.accent, width: 1.5 * px });
     vehicle.wheel.forEach((/** @type {any} */ wheel, /** @type {number} */ i) => {
-      const isLost = out.contact_state?.[i] > 0;
-      drawWheel(pen, vehicle, wheel, out.wheel_angle_rad[i], {
-        tread: colour.card,
-        stroke: isLost ? colour.warn : colour.ink,
-        width: px,
-      });
+      drawWheel(pen, vehicle, wheel, out.wheel_angle_rad[i], rimOf(out, i, px, colour));
     });
     drawVelocity(pen, out, reach(vehicle), px, colour);
   }

@@ -11,8 +11,7 @@ import can
 import pytest
 
 from driven_scene import DrivenScene, driven_scene
-from laconic.can.play.parameters import drive_parameters
-from laconic.can.play.settings import drive_settings
+from laconic.can.play.settings import drive_parameters, drive_settings
 from laconic.can.play.vehicle import played
 from laconic.can.rig.boards import emulated_node, why_no_emulation
 from laconic.can.rig.lockstep import start_of

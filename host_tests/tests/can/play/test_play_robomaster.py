@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 from laconic.base.paths import SOURCE_DIR
-from laconic.can.play.parameters import drive_parameters
-from laconic.can.play.settings import drive_settings
+from laconic.can.play.settings import drive_parameters, drive_settings
 from laconic.can.play.vehicle import played
 from laconic.can.rig.boards import own_node, why_no_emulation
 from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel

@@ -12,7 +12,7 @@ from laconic.can.rig.boards import own_node
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.faulty import FaultyBus
 from laconic.can.rig.free_judge import judge_free_run
-from laconic.can.rig.silence import timeout_us
+from laconic.can.rig.punctuality import timeout_us
 from laconic.can.rig.verdict import Judgement
 from laconic.can.rig.wire import wire
 from laconic.scene import read_scene

@@ -28,10 +28,12 @@ from laconic.cli.main import run as laconic
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.scene import read_scene, rigid_scene_names
+from laconic.scene.ground import slips
 from laconic.scene.scene_tables import scene_tables
 from laconic.simulation import simulate
 
-HINGED = tuple(name for name in scene_names() if name not in rigid_scene_names())
+HINGED = tuple(name for name in scene_names() if name not in rigid_scene_names()
+               and not slips(read_scene(name).vehicle))
 SIGNALS = {"pose": ("x_m", "y_m", "heading_rad"), "velocity": ("velocity_body_m_per_s", "yaw_rate_rad_per_s"),
            "wheel_speed": ("wheel_speed_rad_per_s",), "wheel_angle": ("wheel_angle_rad",),
            "hinge_angle": ("hinge_angle_rad",), "hinge_rate": ("hinge_rate_rad_per_s",)}
@@ -44,6 +46,15 @@ def tables_of(name: str, **changes: Any) -> dict[str, Any]:
 def shortened(name: str, real: str, steps: int) -> Scene:
     """The scene's first steps, with every step among its outputs."""
     scene = read_scene(name).with_run(real=real)
+    scene = scene.with_run(duration_s=steps * scene.run.step_s)
+    return replace(scene, outputs=replace(scene.outputs, every_s=scene.run.step_s, signals=()))
+
+
+def slipping(name: str, real: str, steps: int, friction: float = 0.4) -> Scene:
+    """The same on ground with friction."""
+    tables = tables_of(name, ground={"friction_coefficient": friction})
+    tables["vehicle"].pop("friction_coefficient", None)
+    scene = build_scene(tables).with_run(real=real)
     scene = scene.with_run(duration_s=steps * scene.run.step_s)
     return replace(scene, outputs=replace(scene.outputs, every_s=scene.run.step_s, signals=()))
 
@@ -73,6 +84,53 @@ def test_the_project_has_the_eight_scenes() -> None:
 
 @pytest.mark.parametrize("real", REALS)
 @pytest.mark.parametrize("name", HINGED)
+def test_the_node_gives_the_bits_of_simulate_where_wheels_slip(name: str, real: str) -> None:
+    scene = slipping(name, real, 300)
+    with virtual_node(real) as node:
+        assert_bits_of_simulate(run_lockstep(node, scene, fd=True), scene)
+
+
+def equipped(real: str, steps: int) -> Scene:
+    """A tricycle whose front wheel has a servo and whose trailer a hitch: every further number of ground with friction
+    but those of a motor's loop, which the second body has."""
+    wheel = {"kind": "fixed", "axle_deg": -90.0, "driven": False}
+    front = wheel | {"x_m": 0.5, "y_m": 0.0, "steered": "servo", "name": "front", "mass_kg": 1.0,
+                     "yaw_inertia_kgm2": 0.01, "servo_gain_Nm_per_rad": 60.0, "servo_damping_Nms": 1.5,
+                     "servo_limit_Nm": 3.0, "stop_low_rad": -0.2, "stop_high_rad": 0.3, "dry_friction_Nm": 0.05,
+                     "control_period_s": 0.01, "scrub_radius_m": 0.01, "scrub_fade_m": 0.1, "creep": 0.1}
+    arm = {"name": "arm", "hinge": "motor", "hinge_x_m": -0.4, "hinge_y_m": 0.0, "mass_kg": 2.0,
+           "yaw_inertia_kgm2": 0.05, "com_x_m": -0.2, "com_y_m": 0.0, "com_z_m": 0.1,
+           "motor": {"resistance_ohm": 0.5, "torque_constant_Nm_per_A": 0.05, "back_emf_Vs_per_rad": 0.05,
+                     "gear_ratio": 5.0, "viscous_friction_Nms": 0.002, "current_limit_A": 3.0},
+           "loop_V_per_rad": 8.0, "loop_Vs_per_rad": 0.5, "hitch": True}
+    vehicle = {"mass_kg": 20.0, "yaw_inertia_kgm2": 1.0, "com_z_m": 0.1, "com_x_m": 0.1, "wheel_radius_m": 0.1,
+               "wheel_inertia_kgm2": 0.01, "motor_gain_Nm_per_V": 0.5, "motor_damping_Nms": 0.3,
+               "wheel": [wheel | {"x_m": 0.0, "y_m": 0.2, "driven": True},
+                         wheel | {"x_m": 0.0, "y_m": -0.2, "driven": True}, front,
+                         wheel | {"x_m": -0.4, "y_m": 0.0, "body": "arm"}], "body": [arm]}
+    tables = {"vehicle": vehicle, "ground": {"friction_coefficient": 0.4},
+              "initial": {"velocity_body_m_per_s": [0.5, 0]},
+              "run": {"step_s": 0.005, "duration_s": 1.0, "real": real},
+              "input": [{"signal": "voltage_V[1]", "kind": "steps", "t_s": [0.0], "value": [9.0]},
+                        {"signal": "voltage_V[2]", "kind": "steps", "t_s": [0.0], "value": [3.0]},
+                        {"signal": "steering_angle_rad[front]", "kind": "steps", "t_s": [0.0], "value": [0.6]},
+                        {"signal": "steering_angle_rad[arm]", "kind": "steps", "t_s": [0.0], "value": [-0.5]}]}
+    scene = build_scene(tables)
+    scene = scene.with_run(duration_s=steps * scene.run.step_s)
+    return replace(scene, outputs=replace(scene.outputs, every_s=scene.run.step_s, signals=()))
+
+
+@pytest.mark.parametrize("real", REALS)
+def test_servos_loops_stops_hitches_scrub_and_creep_have_the_bits_of_simulate(real: str) -> None:
+    scene = equipped(real, 400)
+    with virtual_node(real) as node:
+        run = run_lockstep(node, scene, fd=True)
+        assert_bits_of_simulate(run, scene)
+        assert judge_scaled(node, scene, scene.steps(), {}).passed
+
+
+@pytest.mark.parametrize("real", REALS)
+@pytest.mark.parametrize("name", HINGED)
 def test_the_node_gives_the_bits_of_simulate(name: str, real: str) -> None:
     scene = shortened(name, real, 700)
     with virtual_node(real) as node:
@@ -93,6 +151,15 @@ def test_an_emulated_board_gives_them_for_all_eight(board: str) -> None:
     with emulated_node(board) as node:
         for name in HINGED:
             scene = shortened(name, real, 12)
+            assert_bits_of_simulate(run_lockstep(node, scene), scene)
+
+
+@pytest.mark.skipif(why_no_emulation() is not None, reason=str(why_no_emulation()))
+def test_an_emulated_board_gives_them_where_wheels_slip() -> None:
+    with emulated_node("an386-slip") as node:
+        assert_bits_of_simulate(run_lockstep(node, equipped("single", 60)), equipped("single", 60))
+        for name in HINGED[:2]:
+            scene = slipping(name, "single", 20)
             assert_bits_of_simulate(run_lockstep(node, scene), scene)
 
 
@@ -192,6 +259,16 @@ def test_a_step_that_the_core_refuses_is_refused_by_the_node_too() -> None:
     with virtual_node() as node:
         judgement = judge_same_bits(node, build_scene(tables_of("frc_swerve_mk4i", input=twist)), 60)
     assert "the node refuses sync: twist zero" in judgement.verdicts[0].detail
+
+
+def test_a_node_without_slip_names_the_remedy() -> None:
+    with virtual_node("double") as node:
+        twin = HingedTwin(slipping("mir_like", "double", 5))
+        node.open()
+        assert node.identity and node.identity.slip
+        node.identity = replace(node.identity, slip=False)
+        with pytest.raises(BadInput, match="ground.friction_coefficient: .*--board an386-slip, or take it out$"):
+            load_hinged(node, twin)
 
 
 def test_a_node_without_hinges_names_the_remedy() -> None:

@@ -13,8 +13,8 @@ import pytest
 from laconic.base.paths import SOURCE_DIR
 from laconic.can.rig.boards import emulated_node, own_node, why_no_emulation
 from laconic.can.rig.buses import virtual_node
+from laconic.can.rig.client import read_estimate
 from laconic.can.rig.errors import NodeRefused
-from laconic.can.rig.estimated import read_estimate
 from laconic.can.rig.free_judge import judge_free_run
 from laconic.can.rig.judge import judge_same_bits, judge_scaled
 from laconic.can.rig.live import View

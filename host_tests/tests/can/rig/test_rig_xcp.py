@@ -144,6 +144,7 @@ def test_the_file_names_each_number_once_at_the_address_of_its_field(name: str) 
     assert where["voltage_2"] == OUTPUTS + EACH * wire()["SELECT"].fields["take_voltage"].start + 4
     assert text.isascii() and "?" not in text and max(map(len, re.findall('"[^"]*"', text))) <= 256
     assert all(PARAMETERS <= each.address < PARAMETERS + SEGMENT for each in parameters(scene))
+    assert name != "s1" or '/begin MEASUREMENT heading "Pose of the centre of mass"' in text  # a whole phrase
     mass = text.partition("CHARACTERISTIC mass_kg")[2].partition("/end")[0]
     assert ("READ_ONLY" in mass) == scene.has_hinges  # which the node does not calibrate
 
@@ -371,22 +372,49 @@ def pump_until(ended: threading.Event, node: NodeClient, end: NodeOnBus) -> None
             pass
 
 
-def test_the_program_of_docs_rig_ports_md_calibrates_a_node(capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("pyxcp")
+def program_of_page(start: str) -> str:
     page = (SOURCE_DIR / "docs/rig-ports.md").read_text(encoding="utf-8")
-    program = re.search(r"```python\n(import struct\nfrom pyxcp.*?)```", page, re.DOTALL)
-    assert program is not None
+    return start + page.partition(f"```python\n{start}")[2].partition("```")[0]
+
+
+def test_the_rig_of_docs_rig_ports_md_drives_a_shared_node_whose_master_was_there_first() -> None:
+    page = (SOURCE_DIR / "docs/rig-ports.md").read_text(encoding="utf-8")
+    command = re.findall(r"^laconic (rig s1 .*:4000 --free-run --steps) 60000$", page, re.M)[0]
+    with node_process("double", ID_BASE, "--shared") as port, \
+            connected("slcan", f"socket://127.0.0.1:{port}") as node:
+        master = Master(node)
+        assert master.ask(0xFF, 0)
+        assert run([*command.replace(":4000", f":{port}").split(), "300"]) == 0
+        assert master.read(addresses(SCENE)["steps"], "<I") > 200
+
+
+@pytest.mark.parametrize(("start", "needs", "sample"), [
+    ("import struct\nfrom pyxcp", "pyxcp", r"^\d\.\d\d s( -?\d+\.\d{4}){3}$"),
+    ("import struct\nimport time\n\nimport can", "can", r"^00( [0-9a-f]{2}){4}\n01( [0-9a-f]{2}){4}\n02")])
+def test_the_programs_of_docs_rig_ports_md_calibrate_and_measure(start: str, needs: str, sample: str,
+                                                                 capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip(needs)
     with node_process("double", ID_BASE, "--shared") as port, \
             connected("slcan", f"socket://127.0.0.1:{port}") as node:
         load_scene(node, read_scene("s1"))
         node.start_free_run(watchdog_ms=0)
-        exec(program[1].replace(":4000", f":{port}"), {})
-        assert "laconic_2" in capsys.readouterr().out
+        exec(program_of_page(start).replace(":4000", f":{port}"), {})
+        out = capsys.readouterr().out
+        assert "laconic_2" in out and len(re.findall(sample, out, re.M)) >= 5
         master = Master(node)
         master.wait(deque(), 0.2)  # what the program has heard on the same bus
         master.answers.clear()
         master.ask(0xFF, 0)
         assert master.read(addresses(SCENE)["mass_kg"]) == 12.5
+
+
+def test_pya2l_reads_the_file_as_the_page_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                               capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pya2l.parser")
+    monkeypatch.chdir(tmp_path)
+    Path("laconic_2.a2l").write_text(a2l_text(SCENE), encoding="ascii")
+    exec(program_of_page("from pya2l"), {})
+    assert capsys.readouterr().out == "0x10080 0x20c80\n"
 
 
 def test_pyxcp_calibrates_and_measures_a_node_process() -> None:

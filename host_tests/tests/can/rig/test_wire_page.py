@@ -19,11 +19,11 @@ from cryptography.hazmat.primitives.cmac import CMAC
 from laconic.base.paths import SOURCE_DIR, built
 from laconic.can.rig.boards import own_node
 from laconic.can.rig.buses import node_process
-from laconic.can.rig.codes import Codes
 from laconic.can.rig.errors import NodeRefused
 from laconic.can.rig.lockstep import start_of
 from laconic.can.rig.node_library import node_library
 from laconic.can.rig.parameters import parameters_of
+from laconic.can.rig.session import Codes
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
 from laconic.core.plant import Plant

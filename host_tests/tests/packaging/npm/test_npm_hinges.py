@@ -173,6 +173,69 @@ def test_every_form_of_a_body_is_understood_as_the_command_understands_it(tmp_pa
         assert each["bodies"] == [hinge.name for hinge in scene.hinges]
 
 
+SLIDING: dict[str, Any] = {**EVERY_FORM, "ground": {"friction_coefficient": 0.3, "slope_deg": 2.0}}
+SLIDING["vehicle"] = {
+    **EVERY_FORM["vehicle"], "com_z_m": 0.2,
+    "wheel": [*EVERY_FORM["vehicle"]["wheel"],
+              {"kind": "fixed", "steered": "servo", "name": "front", "x_m": 0.6, "y_m": -0.2, "driven": False,
+               "mass_kg": 1.0, "yaw_inertia_kgm2": 0.02, "servo_gain_Nm_per_rad": 40.0, "servo_damping_Nms": 1.0,
+               "servo_limit_Nm": 8.0, "rate_limit_rad_per_s": 1.5, "start_angle_deg": 20.0, "stop_high_deg": 40.0,
+               "control_period_s": 0.02, "scrub_radius_m": 0.01, "scrub_fade_m": 0.02, "creep": 0.05},
+              {"kind": "fixed", "steered": "prescribed", "name": "side", "x_m": -0.4, "y_m": 0.4, "mass_kg": 1.0,
+               "yaw_inertia_kgm2": 0.02, "rate_limit_rad_per_s": 2.0, "axle_deg": -84.0},
+              {"kind": "fixed", "steered": "coordinated", "name": "twisted", "x_m": 0.5, "y_m": 0.4, "mass_kg": 1.0,
+               "yaw_inertia_kgm2": 0.02}],
+    "caster": [{**EVERY_FORM["vehicle"]["caster"][0], "com_z_m": 0.1, "dry_friction_Nm": 0.02}],
+    "trailer": [{**EVERY_FORM["vehicle"]["trailer"][0], "wheel_inertia_kgm2": 1e-3, "stop_low_deg": -40.0}],
+    "body": [{**EVERY_FORM["vehicle"]["body"][0], "com_z_m": 0.4, "loop_V_per_rad": 20.0, "loop_Vs_per_rad": 1.0},
+             EVERY_FORM["vehicle"]["body"][1]]}
+SLIDES = [{"voltage_V": [6.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+           "steering_angle_rad": {"front": 0.9, "arm": 0.5}, "steering_rate_rad_per_s": {"side": 0.7},
+           "steering_twist": [1.0, 0.2, 0.0]},
+          {"voltage_V": [24.0, -6.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+           "steering_angle_rad": {"front": -0.4, "arm": -0.2}, "steering_rate_rad_per_s": {"side": -1.0},
+           "steering_twist": [-0.5, -1.0, 0.1], "body_force_N": [0.0, 90.0]},
+          {"voltage_V": [0.0] * 10, "steering_twist": [1.0, 1.0, 1.0], "hinge_torque_Nm": {"late": 3.0}}]
+"""Servo, loop, prescribed and coordinated hinges; the last two turn the coordinated one past a half turn."""
+SLIDE = """
+import { readFileSync } from "node:fs";
+import { load } from "laconic-robots/hinges";
+const { scene, inputs } = JSON.parse(readFileSync("slide.json", "utf8")), laconic = await load();
+const [one, many] = [0, 1].map(() => laconic.robot(scene));
+for (const input of inputs) {
+  for (const robot of [one, many]) robot.setInput(input);
+  for (let k = 0; k < 100; k++) one.run(1);
+  many.run(100);
+}
+console.log(JSON.stringify([one, many].map((robot) => [robot.outputs(), robot.limited])));
+"""
+OF_COMMAND = {"across_N": "wheel_lateral_N", "along_N": "wheel_reaction_N", "normal_N": "wheel_load_N",
+              "scrub_Nm": "scrub_torque_Nm"}
+
+
+def test_wheels_that_slip_on_every_kind_of_hinge_end_with_the_bits_of_the_command(tmp_path):
+    (tmp_path / "slide.json").write_text(json.dumps({"scene": SLIDING, "inputs": SLIDES}), encoding="utf-8")
+    (one, limited), again = json.loads(node(SLIDE, tmp_path))
+    assert again == [one, limited]  # step by step, and many at once
+    scene = scene_with_inputs(SLIDING | {"outputs": {"signals": [
+        "x_m", "heading_rad", "hinge_angle_rad", "slip_across_m_per_s", "contact_state", *OF_COMMAND.values(),
+        "hinge_stop_Nm", "slip_loss_J", "servo_work_J", "spring_energy_J"]}}, SLIDES, 1.0)
+    run = simulate(scene)
+    last = {name: float(column[-1]) for name, column in run.columns.items()}
+    lists = {name: [value for key, value in last.items() if key.partition("[")[0] == name] for name in (
+        "hinge_angle_rad", "slip_across_m_per_s", "contact_state", "hinge_stop_Nm", *OF_COMMAND.values())}
+    for name in ("x_m", "heading_rad", "slip_loss_J", "servo_work_J", "spring_energy_J"):
+        assert one[name] == last[name], name
+    assert list(one["hinge_angle_rad"].values()) == lists["hinge_angle_rad"]
+    assert list(one["stop_torque_Nm"].values()) == lists["hinge_stop_Nm"]
+    for name, of_command in {**OF_COMMAND, "contact_state": "contact_state",
+                             "slip_across_m_per_s": "slip_across_m_per_s"}.items():
+        assert one[name] == lists[of_command], name
+    assert one["slip_loss_J"] > 1.0
+    assert {(each["hinge"], each["limit"], each["steps"]) for each in limited} == {
+        (each.hinge, each.limit, each.steps) for each in run.limited} != set()
+
+
 def scene_with_inputs(tables: dict[str, Any], given: list[dict[str, Any]], each_s: float) -> Scene:
     """The scene with inputs that are held one after the other."""
     held: dict[str, list[float]] = {}
@@ -182,7 +245,7 @@ def scene_with_inputs(tables: dict[str, Any], given: list[dict[str, Any]], each_
             held.setdefault(f"{name}[{item}]" if item else name, [0.0] * len(given))[at] = number
     inputs = [{"signal": signal, "kind": "steps", "t_s": [each_s * at for at in range(len(given))], "value": values}
               for signal, values in held.items() if any(values)]
-    rest = {key: value for key, value in tables.items() if key not in ("input", "outputs", "run")}
+    rest = {key: value for key, value in tables.items() if key not in ("input", "run")}
     return build_scene(rest | {"input": inputs, "run": {"duration_s": each_s * len(given), "step_s": 0.01}})
 
 
@@ -247,6 +310,8 @@ const plain = { mass_kg: 10, yaw_inertia_kgm2: 1, wheel_radius_m: 0.1, wheel_ine
 const made = (change, scene = {}, run) => laconic.robot({ vehicle: { ...plain, ...change }, ...scene }, run);
 const on = (change) => made({ caster: [{ ...caster, ...change }] });
 const front = (change) => made({ wheel: [...plain.wheel, { kind: "fixed", x_m: 1, y_m: 0, ...change }] });
+const slid = (change, run) => made({ wheel_inertia_kgm2: 1, wheel: [...plain.wheel, { kind: "fixed", x_m: 1, y_m: 0,
+  ...change }] }, { ground: { friction_coefficient: 0.5 } }, run);
 const robot = on({}), turned = front({ steered: "prescribed", name: "front", stop_high_rad: 0.1, at_limit: "refuse" });
 const stopped = made({ body: [{ name: "arm", hinge: "free", hinge_x_m: 0, mass_kg: 1, yaw_inertia_kgm2: 1,
   stop_low_rad: -0.2 }] });
@@ -287,7 +352,20 @@ CASES = {
         'vehicle.wheel[3].rate_limit_rad_per_s: has no effect on a hinge that is "motor"',
     "made({ caster: [caster], wheel: [wheel(0, { scrub_m: 1 })] })": "vehicle.wheel[1].scrub_m: has a meaning for a s",
     "made({ caster: [caster, { ...caster, name: 'caster_1' }] })": 'vehicle.caster[2].name: is "caster_1", as of',
-    "made({ caster: [caster] }, { ground: { friction_coefficient: 1 } })": "ground.friction_coefficient: does not act",
+    "made({ caster: [caster] }, { ground: { roller_drag: 0.1 } })": "ground.roller_drag: acts on ground with friction",
+    "made({ caster: [caster] }, { ground: { friction_coefficient: 1 } })": "vehicle.caster[1].wheel_inertia_kgm2: is 0",
+    "made({ caster: [{ ...caster, wheel_inertia_kgm2: 1 }], wheel_inertia_kgm2: 1 }, { ground: { friction_coefficient: "
+    "-1 } })": "ground.friction_coefficient: -1 is ",
+    "on({ dry_friction_Nm: 1 })": "vehicle.caster[1].dry_friction_Nm: acts on ground with friction alone; give ground.",
+    "front({ steered: 'servo' })": 'vehicle.wheel[3].steered: "servo" gives way, which needs ground.friction_coeffic',
+    "slid({ steered: 'servo' })": "vehicle.wheel[3].servo_gain_Nm_per_rad: is missing; give the torque of the servo",
+    "slid({ steered: 'prescribed', servo_gain_Nm_per_rad: 1 })": "vehicle.wheel[3].servo_gain_Nm_per_rad: is of a serv",
+    "slid({ steered: 'coordinated', loop_V_per_rad: 1 })": "vehicle.wheel[3].loop_V_per_rad: is of a loop of a motor",
+    "slid({ steered: 'coordinated', scrub_fade_m: 1 })": "vehicle.wheel[3].scrub_fade_m: has no effect without scrub_",
+    "slid({ steered: 'coordinated', yaw_inertia_kgm2: 1 }).setInput({ steering_twist: [0, 0, 0] })":
+        "steering_twist: is 0, which gives coordinated wheels no direction",
+    "slid({ steered: 'coordinated', yaw_inertia_kgm2: 1 }).reactions()": "reactions: are those of ideal ground",
+    "slid({ steered: 'coordinated', yaw_inertia_kgm2: 1 }, { method: 'rk4' })": "run.method: rk4 does not step",
     "made({ caster: [caster], wheel: [wheel(0, { axle_rad: NaN })] })": "vehicle.wheel[1].axle_rad: NaN is not a",
     "made({ caster: Array(9).fill(0).map((_, k) => ({ ...caster, name: `c${k}` })) })": "vehicle.body: 9 of them, but",
     "made({ caster: [caster] }, { initial: { nu_rad_per_s: [1, 0, 0] } })": "initial.nu_rad_per_s: unknown key",

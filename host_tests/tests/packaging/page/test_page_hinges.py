@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -19,7 +20,7 @@ from laconic_build.page.browser import Browser
 
 SHOTS = PAGE.parent
 HINGED = [name for name in scene_names() if file_has_hinges(scene_path(name))]
-LIMITED = ("frc_swerve_mk4i", "f1tenth", "pr2_base", "tugger_train")
+LIMITED = ("frc_swerve_mk4i", "f1tenth", "pr2_base", "tugger_train", "swerve_module_off", "trailer_on_ice")
 CUT_OFF = """return [...document.querySelectorAll('button, select, label, output, h1, h2, summary, dd, #hinges span')]
     .filter((each) => each.checkVisibility() && each.offsetWidth > 4 && !each.closest('.segments'))
     .filter((each) => each.scrollWidth > each.clientWidth + 1 && each.clientWidth > 0 && each.tagName !== 'SELECT')
@@ -125,6 +126,40 @@ def test_a_car_that_is_driven_ends_where_package_and_command_bring_it_bit_by_bit
     assert pose(page)[0] > 0.2
     assert by_package(file) == pose(page)
     assert simulated(file) == pose(page)
+
+
+@pytest.mark.parametrize(("robot", "lost"), [("swerve_module_off", "wheels 1, 2 slip"),
+                                             ("trailer_on_ice", "wheels 1, 2, 3, 4, 5, 6 slip")])
+def test_wheels_that_slip_on_hinges_are_shown_and_end_where_the_command_brings_them_bit_by_bit(page, robot, lost,
+                                                                                               tmp_path):
+    page.choose("robot", robot)
+    step(page, 20 if robot == "swerve_module_off" else 44)
+    assert page.text("grip-note") == lost and page.text("margin").endswith(" J")
+    rows: list[str] = page.js("return [...document.querySelectorAll('#grip .lost .value')].map((e) => e.textContent)")
+    assert len(rows) == lost.count(",") + 1 and all(re.fullmatch(r"slip \d+\.\d\d m/s, 100 %", row) for row in rows)
+    assert ("trailer folds beyond 90°" in page.text("hinges-note")) == (robot == "trailer_on_ice")
+    assert simulated(exported(page, tmp_path)) == pose(page)  # its own drive
+    choose(page, robot)
+    drive(page)
+    assert page.text("banner") == ""
+    assert simulated(exported(page, tmp_path)) == pose(page)
+
+
+def test_a_start_that_the_robot_without_slip_refuses_ends_that_one_alone(page):
+    choose(page, "trailer_on_ice")
+    page.choose("turn", str(most(page, "turn")))
+    step(page, 2)
+    assert page.text("banner") == "" and page.text("ideal-note").startswith("initial.velocity_body_m_per_s: this start")
+
+
+def test_one_module_that_is_straightened_lets_all_wheels_hold(page, tmp_path):
+    page.choose("robot", "swerve_module_off")
+    step(page, 20)
+    text = exported(page, tmp_path).read_text(encoding="utf-8")
+    assert text.count("axle_deg = -84.0") == 1
+    (tmp_path / "robot.toml").write_text(text.replace("axle_deg = -84.0", "axle_deg = -90.0"), encoding="utf-8")
+    straight = simulate(read_scene(tmp_path / "robot.toml")).columns
+    assert abs(float(straight["heading_rad"][-1])) < 1e-6 < abs(pose(page)[2])
 
 
 @pytest.mark.nightly

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import laconic
-from laconic import ArticulatedBatch, ArticulatedVehicle
+from laconic import ArticulatedBatch, ArticulatedVehicle, SlippingVehicle
 from laconic.errors import BadInput, Refused
+from laconic.scene.scene_tables import scene_tables
 
 NAMES = ("tugger_train", "mir_like", "wheelchair", "f1tenth")
 
@@ -47,6 +48,62 @@ def test_each_lane_has_the_bits_of_its_vehicle_alone(threads: int) -> None:
         assert batch.motion["x_m"][lane] == plant.motion().x_m != 0.0
         assert np.array_equal(batch.motion["hinge_angle_rad"][lane][: plant.vehicle.body_count],
                               plant.motion().hinge_angle_rad)
+
+
+def slipping(name: str, friction: float = 0.3) -> SlippingVehicle:
+    """The vehicle of a scene on slippery ground."""
+    tables = copy.deepcopy(scene_tables(name).entries)
+    tables["vehicle"].pop("friction_coefficient", None)
+    return SlippingVehicle.of(laconic.build_scene(tables | {"ground": {"friction_coefficient": friction}}))
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_each_lane_that_slips_has_the_bits_of_its_vehicle_alone(threads: int) -> None:
+    vehicles = [slipping("mir_like"), slipping("f1tenth"), slipping("mir_like", 0.05)]
+    kind_of = [0, 1, 2, 1, 0]
+    batch = ArticulatedBatch(vehicles, step_s=0.005, kind_of=kind_of)
+    plants = [vehicles[kind].plant(step_s=0.005) for kind in kind_of]
+    for lane, plant in enumerate(plants):
+        volts = [2.0 + 3 * lane + n for n in range(plant.vehicle.wheel_count)]
+        angles = [0.1 * lane] * plant.vehicle.body_count
+        batch.of("voltage_V")[: len(volts), lane] = volts
+        batch.of("steering_angle_rad")[: len(angles), lane] = angles
+        plant.run({"voltage_V": volts, "steering_angle_rad": angles}, 40)
+    assert batch.run(40, threads) == 0
+    for lane, plant in enumerate(plants):
+        assert tree_bits(batch.state(lane), batch.core) == tree_bits(plant.c, batch.core)
+        found, wanted = batch.outputs[lane], plant.outputs()
+        assert batch.motion["x_m"][lane] == wanted.motion.x_m != 0.0
+        assert found["slip_loss_J"] == wanted.slip_loss_J
+        assert np.array_equal(found["slip_along_m_per_s"][: plant.vehicle.wheel_count], wanted.slip_along_m_per_s)
+    assert batch.outputs["slip_loss_J"].min() > 0.0
+
+
+def tree_bits(state: object, core: laconic.Core) -> bytes:
+    return bytes(core.ffi.buffer(state, core.ffi.sizeof("laconic_tree_state")))
+
+
+def test_a_lane_that_slips_is_refused_copied_and_loaded_as_others_are() -> None:
+    batch = ArticulatedBatch(slipping("mir_like"), 3, step_s=0.005)
+    batch.of("voltage_V")[:] = 4.0
+    batch.of("voltage_V[1]")[1] = np.nan
+    assert batch.run(5) == 1 and batch.missed.tolist() == [0, 5, 0]
+    why = batch.refusal(1)
+    assert why is not None and why.message.startswith("lane 1: voltage_V[1]")
+    batch.of("voltage_V[1]")[1] = 4.0
+    batch.load(1, batch.state(0))
+    others = [copy.copy(batch), pickle.loads(pickle.dumps(batch))]
+    assert [each.run(3) for each in (batch, *others)] == [0, 0, 0]
+    assert all(tree_bits(each.state(1), batch.core) == tree_bits(batch.state(0), batch.core) for each in others)
+
+
+def test_a_batch_is_on_one_ground_and_says_what_ideal_ground_lacks() -> None:
+    with pytest.raises(BadInput, match=r"^vehicles\[2\]: is on ground with friction.*one batch for each ground$"):
+        ArticulatedBatch([vehicle("mir_like"), slipping("mir_like")])
+    with pytest.raises(BadInput, match=r"^vehicles\[1\]: method: .*auto"):
+        ArticulatedBatch(slipping("mir_like"), method="rk4")
+    with pytest.raises(BadInput, match="^outputs: .*SlippingVehicle"):
+        _ = ArticulatedBatch(vehicle("mir_like")).outputs
 
 
 def test_a_refused_lane_stays_and_the_others_continue() -> None:

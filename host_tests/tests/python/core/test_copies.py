@@ -211,8 +211,7 @@ def test_a_copied_controller_plans_as_the_original(way: Any) -> None:
 
 def test_a_copied_environment_does_what_the_original_does(way: Any) -> None:
     pytest.importorskip("gymnasium")
-    from laconic.tools.learn.one import DriveToPose
-    from laconic.tools.learn.vector import DriveToPoseVector
+    from laconic.tools.learn.environments import DriveToPose, DriveToPoseVector
 
     for made in (DriveToPose(), DriveToPoseVector(4)):
         made.reset(seed=3)

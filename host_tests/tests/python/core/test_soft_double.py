@@ -10,8 +10,7 @@ import pytest
 from assurance.targets import board_lines
 from laconic.base.paths import SOURCE_DIR, built
 from laconic.cli.main import run
-from laconic.tools.report.binary_tools import run_tool
-from laconic.tools.report.workshop import BOARDS, M4F
+from laconic.tools.report.workshop import BOARDS, M4F, run_tool
 
 CORE = SOURCE_DIR / "core_c"
 M3 = next(board for board in BOARDS if board.name == "Cortex-M3")

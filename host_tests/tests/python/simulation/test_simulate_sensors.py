@@ -177,7 +177,7 @@ def test_csv_and_json_have_counts_as_whole_numbers_and_replay_gives_them_again(
 
 
 def test_the_picture_of_a_run_has_a_panel_for_each_kind_of_sensor(tmp_path: Path) -> None:
-    from laconic.pictures.sensor_panels import sensor_panels
+    from laconic.pictures.curves import sensor_panels
 
     assert sensor_panels(simulate(sensed_scene(tmp_path, RUN))) == []
     assert sensor_panels(simulate(sensed_scene(tmp_path, IMU, RUN))) == ["imu"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -293,9 +294,28 @@ def with_table(tmp_path: Path, name: str, table: str) -> Path:
     return path
 
 
-def test_a_table_of_channels_replaces_the_usual_ones(tmp_path: Path) -> None:
+def snippets(language: str, start: str) -> list[str]:
+    """Those of the page that begin so."""
     page = (SOURCE_DIR / "docs/play.md").read_text(encoding="utf-8")
-    table = page.partition("```toml\n[ardupilot]")[2].partition("```")[0]
+    return [start + each.partition("```")[0] for each in page.split(f"```{language}\n{start}")[1:]]
+
+
+def test_the_table_of_the_page_sets_throttle_and_steering(tmp_path: Path) -> None:
+    outputs = Outputs(read_scene(with_table(tmp_path, "f1tenth", snippets("toml", "[ardupilot]")[0])))
+    shares, _ = outputs.shares((1900, 1500, 1300))
+    assert dict(zip(outputs.signals, outputs.values(shares).tolist(), strict=True)) == {
+        "steering_angle_rad": -0.35, "voltage_V[1]": -6.0, "voltage_V[2]": -6.0}
+
+
+def test_the_program_of_the_page_drives_to_the_north_east(capsys: pytest.CaptureFixture[str]) -> None:
+    with served(read_scene("f1tenth")) as (server, lines):
+        exec(snippets("python", "import json")[0].replace("9002", str(server.port)), {})
+    place, attitude = (json.loads(f"[{each}]") for each in re.findall(r"\[(.*?)\]", capsys.readouterr().out))
+    assert place[0] > 1.0 and place[1] > 0.3 and attitude[2] > 0.3 and (lines, server.player.frames) == ([], 800)
+
+
+def test_a_table_of_channels_replaces_the_usual_ones(tmp_path: Path) -> None:
+    table = snippets("toml", "[ardupilot]")[1].removeprefix("[ardupilot]")
     outputs = Outputs(read_scene(with_table(tmp_path, "turtlebot3_burger", f"""[ardupilot]{table}
 [[ardupilot.channel]]
 number = 8

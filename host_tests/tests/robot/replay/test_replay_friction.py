@@ -23,7 +23,7 @@ from laconic.robot.replay.held_wheels import hold
 from laconic.robot.replay.motor_driven import by_currents
 from laconic.robot.replay.steady_currents import axles_of, current_error_A
 from laconic.scene import read_scene
-from laconic.scene.speed_controller import SpeedController
+from laconic.scene.drives import SpeedController
 from recorded_data import recorded
 
 needs_records = pytest.mark.skipif(not recorded("robotino").exists(), reason="no recorded runs beside the project")

@@ -147,9 +147,9 @@ def test_analysis_that_the_core_does_not_confirm_is_exit_status_1(capsys, monkey
 
 
 def test_derivation_that_contradicts_itself_is_exit_status_1(capsys, monkeypatch):
-    from laconic.tools.derive import checks
+    from laconic.tools.derive import scene_check
 
-    monkeypatch.setattr(checks, "forms_difference", lambda *_: 1e-3)
+    monkeypatch.setattr(scene_check, "forms_difference", lambda *_: 1e-3)
     status, _, err = run(capsys, "derive", "--example", "caster")
     assert status == 1
     assert "contradicts itself" in err

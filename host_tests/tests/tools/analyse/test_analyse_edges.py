@@ -21,8 +21,8 @@ from laconic.tools.analyse.from_core import Subject, subject_of
 from laconic.tools.analyse.geometry import diagnose
 from laconic.tools.analyse.motions import command_parameter, default_range, vehicle_parameter
 from laconic.tools.analyse.pictures_steady import bifurcation_picture
-from laconic.tools.analyse.reach import HEADROOM, largest_nu
-from laconic.tools.report.svg import svg
+from laconic.tools.analyse.speeds import HEADROOM, largest_nu
+from laconic.tools.report.pictures import svg
 from scene_text import constant, wheel
 
 SIDEWAYS = ["turtlebot3_burger", "--only", "steady"]

@@ -6,7 +6,7 @@ import pytest
 from laconic.core import load
 from laconic.scene import read_scene
 from laconic.scene.methods import EXPLICIT
-from laconic.tools.analyse import confirm, pushed
+from laconic.tools.analyse import confirm, steady
 from laconic.tools.analyse.continuation import diagram
 from laconic.tools.analyse.cycle import cycle_near, first_lyapunov
 from laconic.tools.analyse.field import Field
@@ -225,11 +225,11 @@ def test_fixed_point_of_the_damped_vehicle_is_the_least_squares_motion_when_it_d
     rng = np.random.default_rng(seed)
     field, model, _ = random_field(seed)
     rows = CORE.numbers(model.wheel_of_zeta, -1, 3)[: model.wheel_count] @ np.linalg.inv(field.nu_of_zeta)
-    for nu, steady in (((*rng.normal(size=2), 0.0), True), ((0.0, 0.0, rng.normal()), True),
-                       ((*rng.normal(size=2), 1.0), False)):
+    for nu, stays in (((*rng.normal(size=2), 0.0), True), ((0.0, 0.0, rng.normal()), True),
+                      ((*rng.normal(size=2), 1.0), False)):
         voltage = 0.02 / 0.3 * (rows @ nu) + _unseen(rows, rng)
         rate = nu_rates(CORE, model, nu, 0.0, CORE.input({"voltage_V": voltage}, len(voltage)))
-        assert (np.abs(rate).max() < 1e-11) == steady
+        assert (np.abs(rate).max() < 1e-11) == stays
 
 
 def _unseen(rows, rng):
@@ -373,7 +373,7 @@ def test_cycle_separates_motions_that_return_from_those_that_leave_in_the_core(h
 
 def test_caster_theta_pi_is_stable_and_theta_0_is_not():
     """Section 3: the wheel's centre follows the point that is pushed."""
-    found = pushed.headings(subject_of(read_scene("paper_caster")))
+    found = steady.headings(subject_of(read_scene("paper_caster")))
     assert [heading.heading_rad for heading in found] == pytest.approx([0.0, np.pi], abs=1e-12)
     assert [heading.stable for heading in found] == [False, True]
     rate = 0.15 * 1.0 / 0.2  # D F / J1

@@ -10,8 +10,7 @@ from laconic.fmu import make_fmu
 from laconic.scene import METHODS, Scene, read_scene, rigid_scene_names
 from laconic.tools.demo.fmu_rows import fmu_rows
 from laconic.tools.demo.main_job import LEAST_STEPS, steps_of
-from laconic.tools.demo.node_rows import node_rows
-from laconic.tools.demo.rows import Rows, core_rows, difference, exchanges
+from laconic.tools.demo.rows import Rows, core_rows, difference, exchanges, node_rows
 
 # Numbers of steps an exchange that share no factor with the changes of the inputs, nor with each other.
 FMU_EVERY, NODE_EVERY = 3, 7

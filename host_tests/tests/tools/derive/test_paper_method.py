@@ -15,8 +15,7 @@ from laconic.core import load
 from laconic.scene import read_scene
 from laconic.tools.analyse.from_core import Subject, nu_rates, subject_of
 from laconic.tools.derive import brackets, equations, printing, scene_system, vehicles
-from laconic.tools.derive.checks import forms_difference
-from laconic.tools.derive.scene_check import core_difference
+from laconic.tools.derive.scene_check import core_difference, forms_difference
 from scene_text import ideal_scene_names
 
 SYSTEMS = {

@@ -11,8 +11,14 @@ from mpmath import mp, mpf
 from laconic.core import load
 from laconic.scene import read_scene, rigid_scene_names
 from laconic.scene.methods import EXPLICIT
-from laconic.tools.enclosure.rk4_text import Constants, rk4_step
-from laconic.tools.enclosure.rounding_bound import constants_of, forcing_of, rounding_bounds, rounding_row
+from laconic.tools.enclosure.rounding_bound import (
+    Constants,
+    constants_of,
+    forcing_of,
+    rk4_step,
+    rounding_bounds,
+    rounding_row,
+)
 
 SCENES = ("s1", "robotino2", "paper_three_wheel_free", "robomaster_mecanum", "paper_differential_drive")
 TURNING = ("s1", "paper_three_wheel_free")  # within these steps; the others go straight ahead at first

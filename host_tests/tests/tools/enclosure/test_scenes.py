@@ -17,7 +17,7 @@ from laconic.simulation import simulate
 from laconic.tools.enclosure.balls import ball, precision
 from laconic.tools.enclosure.readings import reading_of_core, reading_of_file
 from laconic.tools.enclosure.study import enclose, state_signals, study_of
-from laconic.tools.verify.enclosed_result import bound_text
+from laconic.tools.verify.trajectories import bound_text
 
 SLIP = ("robotino_green", "robotino_grey", "skid_steer")
 SCENES = sorted(set(rigid_scene_names()) - set(SLIP))

@@ -27,6 +27,7 @@ from laconic.frc import MOTORS, Bridge, Drivetrain, Robot, new_scene
 from laconic.frc.drivetrain import Axis, Battery
 from laconic.frc.new import box, mass, module_of, motor_of
 from laconic.frc.physics import Engine
+from laconic.scene import read_scene
 from laconic.scene.base import FrcTable
 
 PAGE = SOURCE_DIR / "docs/frc.md"
@@ -67,11 +68,15 @@ def test_motors_have_the_constants_that_follow_from_their_published_data() -> No
     assert motor_of("falcon").name == "falcon500"
 
 
-def test_the_yaw_inertia_is_that_of_the_bumpers_and_said() -> None:
-    made = new_scene(SWERVE)
-    block = 52.0 * 2.0 * 0.85**2 / 12.0
-    assert f"yaw inertia {block:.3g} kg m²" in made.assumed[0]
-    assert f"yaw_inertia_kgm2 = {block - 4 * 0.03:.8g}" in made.text
+@pytest.mark.parametrize("robot, of_modules", [(SWERVE, 4 * 0.03), (MECANUM, 0.0), (TANK, 0.0)])
+def test_inertias_that_are_said_are_those_of_the_scene(robot: Robot, of_modules: float, tmp_path: Path) -> None:
+    made = new_scene(robot)
+    said = {name: text for line in made.assumed for name, text in re.findall(r"^(.*?) ([\d.e-]+) kg m²", line)}
+    written = read_scene(scene_of(tmp_path, robot)).vehicle
+    length_m, width_m = robot.bumpers_m
+    assert written["yaw_inertia_kgm2"] == float(said["yaw inertia"]) == pytest.approx(
+        52.0 * (length_m**2 + width_m**2) / 12.0 - of_modules, rel=1e-3)
+    assert written["wheel_inertia_kgm2"] == float(said["inertia of a wheel"])
 
 
 def test_quantities_take_the_units_of_teams() -> None:
@@ -274,14 +279,7 @@ def robotpy(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
                           check=False, timeout=120, env={**os.environ, "PATH": path})
 
 
-@needs_robotpy
-@pytest.mark.nightly
-@pytest.mark.parametrize("drive", ["swerve", "mecanum"])
-def test_the_robots_of_the_page_pass_robotpy_test(drive: str, tmp_path: Path) -> None:
-    command = of_page("sh", f"--new {drive}")
-    command = command[command.index("laconic frc"):]
-    project(tmp_path, command, of_page("python", "SwerveDrive4" if drive == "swerve" else "MecanumDrive"))
-    test = of_page("python", "def test_autonomous") if drive == "swerve" else """
+TESTS = {"mecanum": """
 def test_autonomous(control, robot):
     with control.run_robot():
         seen = []
@@ -297,7 +295,28 @@ def test_autonomous(control, robot):
         robot.encoders[0].reset()
         control.step_timing(seconds=0.2, autonomous=True, enabled=True)
         assert abs(robot.gyro.getAngle()) < 0.1 and abs(robot.encoders[0].get()) < 10
-"""
+""", "differential": """
+def test_autonomous(control, robot):
+    with control.run_robot():
+        control.step_timing(seconds=0.1, autonomous=True, enabled=False)
+        control.step_timing(seconds=0.6, autonomous=True, enabled=True)
+        ahead = robot.physics.drivetrain.motion()  # PWM pulses are whole, so that the sides differ a little
+        assert ahead.x_m > 0.3 and abs(ahead.y_m) < 0.01 and robot.encoders[0].get() > 500
+        control.step_timing(seconds=2.0, autonomous=True, enabled=True)
+        assert robot.physics.drivetrain.motion().heading_rad > 0.5
+        assert robot.gyro.getAngle() < -30
+"""}
+
+
+@needs_robotpy
+@pytest.mark.nightly
+@pytest.mark.parametrize("drive", ["swerve", "mecanum", "differential"])
+def test_the_robots_of_the_page_pass_robotpy_test(drive: str, tmp_path: Path) -> None:
+    command = of_page("sh", f"--new {drive}")
+    command = command[command.index("laconic frc"):]
+    project(tmp_path, command, of_page("python", {
+        "swerve": "SwerveDrive4", "mecanum": "MecanumDrive", "differential": "DifferentialDrive"}[drive]))
+    test = of_page("python", "def test_autonomous") if drive == "swerve" else TESTS[drive]
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests/robot_test.py").write_text(test, encoding="utf-8")
     done = robotpy(tmp_path, "test", "--", "-s")

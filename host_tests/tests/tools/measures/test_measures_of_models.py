@@ -23,7 +23,7 @@ from laconic.tools.measures.authority import (
     speed_of_voltage,
     straight_reach,
 )
-from laconic.tools.measures.course import Winding
+from laconic.tools.measures.measure import Winding
 from laconic.tools.measures.prepared import Prepared
 from laconic.tools.measures.stability import first_unstable_speed
 

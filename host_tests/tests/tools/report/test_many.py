@@ -21,7 +21,7 @@ from laconic.core.plant import Plant
 from laconic.scene import read_scene
 from laconic.tools.report import accuracy, estimated, friction_accuracy, friction_cost, robot
 from laconic.tools.report.extremes import CASES, METHODS, Extreme, run_case
-from laconic.tools.report.many import energy, jax_lanes, mujoco_base, numba_loop, race
+from laconic.tools.report.many import jax_lanes, mujoco_base, numba_loop, race
 from laconic.tools.report.many.task import AGREEMENT, core_batch, core_states, difference, equations_of
 from laconic.tools.report.targets import friction_targets
 from laconic.tools.report.workshop import HOST
@@ -123,7 +123,7 @@ def test_energy_is_read_across_a_wrap_of_its_counter(tmp_path):
         folder.mkdir()
         (folder / "energy_uj").write_text(f"{value}\n")
         (folder / "max_energy_range_uj").write_text("999\n")
-    counter = energy.EnergyCounter(tmp_path)
+    counter = race.EnergyCounter(tmp_path)
     before = counter.reading()
     (package / "energy_uj").write_text("100\n")
     assert counter.is_readable
@@ -132,7 +132,7 @@ def test_energy_is_read_across_a_wrap_of_its_counter(tmp_path):
 
 def test_where_no_counter_can_be_read_there_is_no_energy(tmp_path):
     (tmp_path / "intel-rapl:0").mkdir()
-    assert not energy.EnergyCounter(tmp_path).is_readable
+    assert not race.EnergyCounter(tmp_path).is_readable
 
 
 # ---- The report's table of estimated beside true errors.

@@ -15,13 +15,12 @@ import friction_scenes
 from laconic.base.paths import SCENE_DIR
 from laconic.cli import main as cli
 from laconic.errors import Refused
-from laconic.pictures.method_style import METHOD_STYLES
+from laconic.pictures.curve_style import METHOD_STYLES
 from laconic.scene import METHODS, read_scene
 from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, EXPLICIT_8
 from laconic.tools.report import accuracy, pictures, robot
 from laconic.tools.report.collect import PARTS
-from laconic.tools.report.plan import plan
-from laconic.tools.report.svg import SIZE, svg
+from laconic.tools.report.pictures import SIZE, plan, svg
 from laconic.tools.report.writing import write
 
 pytestmark = pytest.mark.nightly

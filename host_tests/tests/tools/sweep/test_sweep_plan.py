@@ -8,8 +8,7 @@ import pytest
 from laconic.errors import BadInput
 from laconic.scene.methods import EXPLICIT
 from laconic.scene.scene_tables import scene_tables
-from laconic.tools.sweep.plan import make_plan, plan_from
-from laconic.tools.sweep.points import SAMPLINGS
+from laconic.tools.sweep.plan import SAMPLINGS, make_plan, plan_from
 from laconic.tools.sweep.varied import read_varied
 
 MASS, RADIUS = "vehicle.mass_kg", "vehicle.wheel[*].radius_m"

@@ -26,10 +26,9 @@ from laconic.scene.methods import EXACT, EXPLICIT
 from laconic.simulation import advance_plant
 from laconic.simulation.articulated import start_plant
 from laconic.simulation.steering import Commands
-from laconic.tools.report.binary_tools import run_tool
 from laconic.tools.report.boards import board_row
 from laconic.tools.report.counting import host_state
-from laconic.tools.report.workshop import HOST, M4F, Variant, Workshop
+from laconic.tools.report.workshop import HOST, M4F, Variant, Workshop, run_tool
 from laconic.tools.trim import needs_of, trimmed
 from laconic.tools.trim.c_tables import initializer
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import can
 
-from laconic.can.rig.frames import FrameBox
 from laconic.can.rig.node_library import node_library
+from laconic.can.rig.wire import FrameBox
 from laconic.errors import BadInput, reason_of
 
 LARGEST_PORT = 65535

@@ -11,8 +11,7 @@ from typing import Any
 
 from laconic.can.play.checksums import Checksum, read_checksum
 from laconic.can.play.map_signals import OF_ANGLE, inputs_of, outputs_of, why_unknown
-from laconic.scene.map_toml import read_map_toml
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_map_toml
 
 AT_TIMEOUT = ("hold", "zero", "off", "end")
 REMOTE = "remote"

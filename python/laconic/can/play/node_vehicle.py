@@ -19,17 +19,15 @@ from laconic.can.play.faults import DriveFault
 from laconic.can.play.journey import Pose
 from laconic.can.play.loop import Lateness
 from laconic.can.play.orders import Orders
-from laconic.can.play.parameters import drive_parameters
 from laconic.can.play.senders import Senders
-from laconic.can.play.settings import DriveSettings
+from laconic.can.play.settings import DriveSettings, drive_parameters
 from laconic.can.play.vehicle import played, without_sensors
-from laconic.can.rig.client import NodeClient
+from laconic.can.rig.client import RUNNING, NodeClient, come_to_rest, stop_running
 from laconic.can.rig.errors import BusDied, NodeRefused, NodeSilent
 from laconic.can.rig.faults import error_frame
 from laconic.can.rig.hinged import HingedTwin, load_hinged
 from laconic.can.rig.link import receive_on, send_on
 from laconic.can.rig.lockstep import load_scene
-from laconic.can.rig.stopping import RUNNING, come_to_rest, stop_running
 from laconic.can.rig.wire import ID_STRIDE, Frame, wire
 from laconic.errors import BadInput, LaconicError, ResultFails
 from laconic.scene import Scene

@@ -1,4 +1,7 @@
-"""One `laconic play` from the open bus to its end, however that comes, and what there is to say about it."""
+"""One `laconic play` from the open bus to its end, however that comes, and what there is to say about it.
+
+What goes wrong on purpose in a run, and the verdict on whether the vehicle stopped.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +10,67 @@ from contextlib import contextmanager
 
 import can
 
-from laconic.can.play.faults import read_bus_faults, read_faults
+from laconic.can.play.faults import Saboteur, faulty_bus, read_bus_faults, read_faults
 from laconic.can.play.journey import Journey
 from laconic.can.play.live import live_traffic
 from laconic.can.play.loop import Loop, Seconds, Traffic
 from laconic.can.play.options import PlayOptions, check_options
 from laconic.can.play.places import Place, Played, place_of
 from laconic.can.play.settings import DriveSettings, as_values
-from laconic.can.play.trouble import Trouble
-from laconic.can.play.vehicle import check_playable
+from laconic.can.play.stopping import Witness
+from laconic.can.play.vehicle import check_playable, coasts_for_ever
 from laconic.can.rig.bagged import played_views
-from laconic.can.rig.errors import BusDied, Interrupted
-from laconic.can.rig.interruption import Interruption
+from laconic.can.rig.errors import BusDied, Interrupted, Interruption
+from laconic.can.rig.faulty import FaultyBus
 from laconic.can.rig.link import Clock
 from laconic.can.rig.logs import Lost, logged
 from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.errors import LaconicError
 from laconic.scene import Scene
+
+
+class Trouble:
+    """Faults of drives and bus; `bus` is the controller's with its faults, `others` are called in the loop."""
+
+    def __init__(self, place: Place, options: PlayOptions, vehicle: Played, traffic: Traffic, bus: can.BusABC):
+        self.limits, self.bus = options.limits, bus
+        self.faults = read_faults(options.faults, place.can_fail, options.duration_s, options.random_seed)
+        bus_faults = read_bus_faults(options.bus_faults, place.can_fail, options.random_seed)
+        if bus_faults:
+            self.bus = faulty_bus(bus, bus_faults, lambda: traffic.clock.now_us() / 1e6)
+        self.others: list[Callable[[int], int | None]] = []
+        self._saboteur = Saboteur(vehicle, self.faults) if self.faults else None
+        if self._saboteur is not None:
+            self.others.append(self._saboteur)
+        self._witness: Witness | None = None
+        if self.limits.are_given:
+            has_faults = bool(self.faults or bus_faults)
+            self._witness = Witness(vehicle, self._first_fault if has_faults else None,
+                                    coasts=coasts_for_ever(place.scene))
+            self.others.append(self._witness)
+            traffic.of_controller.append(self._witness.heard)
+
+    def __enter__(self) -> Trouble:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if isinstance(self.bus, FaultyBus):
+            self.bus.let_go()
+
+    @property
+    def judges_stop(self) -> bool:
+        """Whether the vehicle's stop is judged: a watchdog that fires may be what stops it."""
+        return self.limits.are_given
+
+    def _first_fault(self) -> float | None:
+        found = [self._saboteur.first_s if self._saboteur is not None else None,
+                 self.bus.model.first_injection_s if isinstance(self.bus, FaultyBus) else None]
+        return min((each for each in found if each is not None), default=None)
+
+    def verdicts(self) -> list[Verdict]:
+        """On the vehicle's stop, where it is wanted."""
+        return [self._witness.verdict(self.limits)] if self._witness is not None else []
+
 
 Others = Sequence[Callable[[int], int | None]]
 OF_STATIONS = ("node_ids", "watchdog_s")

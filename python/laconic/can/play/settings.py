@@ -1,5 +1,8 @@
 """The settings of each drive: what `[rig.drives]` gives, else the vehicle's motor, else the protocol's usual value, and
-loop gains from the inertia that a wheel turns."""
+loop gains from the inertia that a wheel turns.
+
+The settings of drives as PARAMETER numbers of a node.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from typing import Any
 from laconic.can.play.protocols import OF_MAP, PROTOCOLS, DriveProtocol
 from laconic.can.play.vehicle import moved_inertia
 from laconic.can.rig.options import in_hex, read_id_base
+from laconic.can.rig.parameters import Parameter
 from laconic.can.rig.wire import ID_STRIDE
 from laconic.errors import BadInput, nearest_of
 from laconic.scene import Scene
@@ -205,3 +209,26 @@ def as_values(settings: DriveSettings) -> dict[str, Any]:
     return {"protocol": settings.protocol.name, "node_ids": [
         node_id if has_drive else None for node_id, has_drive in zip(settings.node_ids, settings.driven, strict=True)],
         "watchdog_s": settings.watchdog_s, **{key: list(values) for key, values in settings.numbers.items()}}
+
+
+FIELDS = {
+    "encoder_counts": "ENCODER_COUNTS", "gear_ratio": "DRIVE_GEAR_RATIO",
+    "torque_constant_Nm_per_A": "DRIVE_TORQUE_CONSTANT", "back_emf_Vs_per_rad": "DRIVE_BACK_EMF",
+    "current_limit_A": "DRIVE_CURRENT_LIMIT", "speed_limit_rad_per_s": "DRIVE_SPEED_LIMIT", "supply_V": "DRIVE_SUPPLY",
+    "winding_resistance_ohm": "DRIVE_WINDING_RESISTANCE", "current_bandwidth_rad_per_s": "DRIVE_CURRENT_BANDWIDTH",
+    "position_gain_per_s": "DRIVE_POSITION_GAIN", "speed_gain_As": "DRIVE_SPEED_GAIN",
+    "speed_integral_gain_A": "DRIVE_SPEED_INTEGRAL_GAIN", "stall_time_s": "DRIVE_STALL_TIME"}
+WHOLE = ("encoder_counts",)
+
+
+def drive_parameters(settings: DriveSettings) -> Iterator[Parameter]:
+    """The protocol, its watchdog, and the numbers of each wheel that has a drive, counted from 1."""
+    yield "DRIVE_PROTOCOL", 0, settings.protocol.number
+    if settings.watchdog_s is not None:
+        yield "DRIVE_WATCHDOG", 0, settings.watchdog_s
+    for wheel, has_drive in enumerate(settings.driven):
+        if not has_drive:
+            continue
+        yield "DRIVE_NODE_ID", wheel + 1, settings.node_ids[wheel]
+        for key, value in settings.of_wheel(wheel).items():
+            yield FIELDS[key], wheel + 1, int(value) if key in WHOLE else value

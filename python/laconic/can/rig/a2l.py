@@ -204,7 +204,7 @@ def of_frame(frame: str, signal: str, k: int | None = None) -> tuple[str, str, s
     message = wire().database.get_message_by_name(frame)
     found = next(each for each in message.signals if each.name == signal + ("1" if signal.endswith("_") else ""))
     name = signal if k is None else f"{'encoder_' if signal == 'count' else signal}{k + 1}"
-    return name, re.split(r"[.:,]| \(", message.comment or frame)[0], found.unit or ""
+    return name, re.split(r"[.:,;]| \(", message.comment or frame)[0], found.unit or ""
 
 
 def descriptions() -> dict[str, str]:

@@ -15,8 +15,8 @@ import can
 
 from laconic.base.paths import built
 from laconic.can.rig.client import NodeClient
-from laconic.can.rig.echo import deaf_to_itself
 from laconic.can.rig.errors import CannotReach, in_words
+from laconic.can.rig.faulty import deaf_to_itself
 from laconic.can.rig.link import Clock, Link
 from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.socket_line import read_in_chunks

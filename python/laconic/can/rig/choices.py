@@ -25,6 +25,7 @@ BOARDS = {board.name: board for board in (
     Board("an500", "mps2-an500", "double", "Arm MPS2, Cortex-M7"),
     Board("microbit", "microbit", "single", "BBC micro:bit, Cortex-M0"),
     Board("an386-hinges", "mps2-an386", "single", "Cortex-M4F, for vehicles with hinges"),
+    Board("an386-slip", "mps2-an386", "single", "the same on ground with friction"),
     Board("an500-hinges", "mps2-an500", "double", "Cortex-M7, for vehicles with hinges"),
     Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"),
     Board("an386-xcp", "mps2-an386", "single", "the same with XCP"),

@@ -1,4 +1,9 @@
-"""A client of a node: opens a session, loads a vehicle, selects frames, starts, stops and resets."""
+"""A client of a node: opens a session, loads a vehicle, selects frames, starts, stops and resets.
+
+What a node tells of its error at the end of a run: all pages of one ERROR_ESTIMATE.
+
+Bringing a node to rest, however a run has ended, and finding one that runs.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from laconic.can.rig.errors import CannotReach, NodeRefused, NodeSilent
+from laconic.can.rig.errors import BusDied, CannotReach, NodeRefused, NodeSilent
 from laconic.can.rig.link import Link, Received
 from laconic.can.rig.parameters import Parameter, parameter_words, parameters_of
 from laconic.can.rig.wire import Frame, wire
 from laconic.core.plant import Plant
+from laconic.scene import Scene
 
 REPEAT_S = 0.1  # wait for an answer before the same frame is sent again
 
@@ -30,6 +36,7 @@ class Identity:
     can_fd: bool
     protocol: int
     hinges: bool = False  # vehicles with hinges
+    slip: bool = False    # also on ground with friction
 
 
 class NodeClient:
@@ -259,4 +266,80 @@ def identity_of(values: dict[str, int]) -> Identity:
     version = ".".join(str(values[f"version_{part}"]) for part in ("major", "minor", "patch"))
     real = {4: "single", 8: "double"}.get(values["scalar_bytes"], f"{values['scalar_bytes']} bytes")
     return Identity(version, real, values["max_wheels"], values["methods"], bool(values["can_fd"]), values["protocol"],
-                    bool(values["hinges"]))
+                    bool(values["hinges"]), bool(values["slip"]))
+
+
+FRAME = "ERROR_ESTIMATE"
+UNITS = {"nu": "nu_rad_per_s", "place": "place_m", "heading": "heading_rad", "wheel_angle": "wheel_angle_rad"}
+LARGEST = "largest_"
+PAGES = 2 * len(UNITS)
+ROUNDS = 5  # of its cycle, in which all pages of one instant must come
+
+
+def is_estimated(scene: Scene) -> bool:
+    """Whether the scene's [rig] frames ask for it."""
+    return FRAME in scene.rig.frames
+
+
+def read_estimate(node: NodeClient) -> dict[str, float]:
+    """The figures by the names of `laconic simulate`, of an instant from now on; none where pages do not come in time.
+    A node at rest goes on to send them."""
+    frame, found = wire()[FRAME], dict[int, dict[str, float]]()
+    deadline_us = node.link.deadline_us(ROUNDS * float(frame.attributes["GenMsgCycleTime"]) / 1e3)
+    while len(found) < PAGES and (received := node.link.receive_until(deadline_us)) is not None:
+        if received[0].name == FRAME:
+            values = frame.physical(received[1])
+            if values["page"] == 0:
+                found.clear()
+            if values["page"] == len(found):  # the next of the same instant
+                found[len(found)] = values
+    return figures_of(found) if len(found) == PAGES else {}
+
+
+def figures_of(pages: dict[int, dict[str, float]]) -> dict[str, float]:
+    """Of all pages."""
+    values = {name: value for page in pages.values() for name, value in page.items()}
+    named = {f"{which}estimated_error_{unit}": values[which + name] for which in ("", LARGEST)
+             for name, unit in UNITS.items()}
+    return named | {"estimate_unknown_windows": values["unknown"]}
+
+
+ATTEMPTS = 4
+PATIENCE_S = 0.25  # wait for one answer: a run that ends must not take long
+RUNNING = ("lockstep", "free run", "timeout", "drives")
+
+
+def come_to_rest(node: NodeClient) -> str | None:
+    """Sends STOP until it is answered; returns None, or the last error where no answer came."""
+    patience_s, node.timeout_s = node.timeout_s, min(node.timeout_s, PATIENCE_S)
+    why = "no attempt was made"
+    try:
+        for _ in range(ATTEMPTS):
+            try:
+                node.stop()
+                return None
+            except (NodeSilent, NodeRefused) as error:  # a refusal may be the late answer to another frame
+                why = str(error)
+            except BusDied as error:
+                return str(error)
+    finally:
+        node.timeout_s = patience_s
+    return why
+
+
+def stop_running(node: NodeClient) -> str:
+    """Opens a session, which stops a node that runs; the state in which it was found. CannotReach when no
+    node answers on the bus."""
+    try:
+        node.open()
+    except (BusDied, NodeSilent, NodeRefused) as error:
+        raise CannotReach(f"no node could be reached: {error}") from None
+    return node.found
+
+
+def stop_and_reset(node: NodeClient, with_reset: bool) -> dict[str, str]:
+    """What --stop and --reset do: the states in which the node was found and left."""
+    found = stop_running(node)
+    if with_reset and node.state != "empty":  # without a vehicle there is no start to return to
+        node.reset()
+    return {"found": found, "state": node.state}

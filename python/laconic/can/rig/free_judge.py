@@ -15,11 +15,10 @@ from laconic.can.rig.client import NodeClient
 from laconic.can.rig.free_run import CYCLE_S, DEFAULT_FRAMES, HINGED_DEFAULT_FRAMES, FreeRun, run_free
 from laconic.can.rig.hinged import HingedTwin, resting_row, run_commanded
 from laconic.can.rig.judge import link_verdict
-from laconic.can.rig.latency import period_figures
+from laconic.can.rig.lockstep import period_figures
 from laconic.can.rig.scaled import expected_raw, rounding_limit
 from laconic.can.rig.sensed import WHOLE_COUNT, Twin, part_of, period_of, plant_of, twin_of
-from laconic.can.rig.trial import Moved, Trial, driven
-from laconic.can.rig.verdict import Judgement, Verdict
+from laconic.can.rig.verdict import Judgement, Moved, Trial, Verdict, driven
 from laconic.can.rig.wire import Frame
 from laconic.errors import BadInput
 from laconic.scene import Scene

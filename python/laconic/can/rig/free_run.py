@@ -14,9 +14,8 @@ from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import NodeRefused, NodeSilent
 from laconic.can.rig.hinged import check_hinged_frames
 from laconic.can.rig.lockstep import load_scene
-from laconic.can.rig.punctuality import Punctuality
+from laconic.can.rig.punctuality import Punctuality, Silence
 from laconic.can.rig.scaled import ANSWERS, Held, Hinged, Voltages, check_voltages_only, select_bits
-from laconic.can.rig.silence import Silence
 from laconic.can.rig.wire import Frame, wire
 from laconic.errors import BadInput
 from laconic.scene import Scene

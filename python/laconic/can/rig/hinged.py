@@ -12,11 +12,13 @@ from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import RunEnds
 from laconic.can.rig.parameters import Parameter, vehicle_parameters
 from laconic.can.rig.wire import WHEELS_A_GROUP, Field, Frame, wire
-from laconic.core.articulated import ArticulatedPlant, method_names
+from laconic.core.articulated import ArticulatedPlant, ArticulatedVehicle, max_bodies, method_names
 from laconic.core.articulated_input import member_of
+from laconic.core.slipping import SlippingPlant, SlippingVehicle, hinge_keys, wheel_keys
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
 from laconic.simulation.articulated import follow_rows, given_start, start_plant, watched_hinges
+from laconic.simulation.slipping import SlippingCommands, start_slipping
 from laconic.simulation.steering import Commands
 
 HINGED_FRAMES = ("VELOCITY", "HINGE_ANGLE", "HINGE_RATE")
@@ -27,6 +29,16 @@ RAW_OUTPUTS = ("raw_pose", "raw_wheel_speed", "raw_wheel_angle", "raw_velocity",
 RAW_INPUTS = {"take_hinge_voltage": "hinge_voltage_V", "take_hinge_torque": "hinge_torque_Nm",
               "take_hinge_rate": "hinge_rate_rad_per_s", "take_twist": "twist"}
 """Bit of SELECT → member of laconic_articulated_input, in the order of the stream."""
+RAW_ANGLES = "take_hinge_angle"  # behind them, where wheels may slip
+TREE_FIELDS = {"com_z_m": "BODY_COM_Z", "hitch": "HINGE_HITCH", "dry_friction_Nm": "HINGE_DRY_FRICTION",
+               "stop_low_rad": "HINGE_STOP_LOW", "stop_high_rad": "HINGE_STOP_HIGH",
+               "servo_gain_Nm_per_rad": "SERVO_GAIN", "servo_damping_Nms": "SERVO_DAMPING",
+               "servo_limit_Nm": "SERVO_LIMIT", "viscous_friction_Nms": "HINGE_VISCOUS_FRICTION",
+               "winding_resistance_ohm": "HINGE_RESISTANCE", "current_limit_A": "HINGE_CURRENT_LIMIT",
+               "loop_V_per_rad": "LOOP_ANGLE_GAIN", "loop_Vs_per_rad": "LOOP_RATE_GAIN",
+               "control_period_s": "CONTROL_PERIOD", "load_N": "WHEEL_LOAD", "scrub_radius_m": "SCRUB_RADIUS",
+               "scrub_fade_m": "SCRUB_FADE", "creep": "CREEP"}
+"""Member of laconic_tree_hinge or laconic_tree_wheel → field."""
 BODY_FIELDS = {"BODY_PARENT": "parent", "BODY_HINGE": "hinge", "BODY_HINGE_X": "hinge_x_m", "BODY_HINGE_Y": "hinge_y_m",
                "BODY_MASS": "mass_kg", "BODY_COM_X": "com_x_m", "BODY_COM_Y": "com_y_m",
                "BODY_YAW_INERTIA": "yaw_inertia_kgm2", "HINGE_DAMPING": "damping_Nms",
@@ -37,16 +49,34 @@ ROUNDING_OF_TWIST = 1e-3  # as in the node (node_hinges.c)
 CHUNK = 512               # steps whose inputs are made ready at once
 
 
+HingedPlant = ArticulatedPlant | SlippingPlant
+
+
 class HingedTwin:
     """The vehicle of a scene, which takes the inputs of the scene as `laconic simulate` does."""
 
+    vehicle: ArticulatedVehicle
+    plant: HingedPlant
+    commands: Commands
+
     def __init__(self, scene: Scene):
         self.scene, self.core = scene, scene.core()
-        self.vehicle = scene.articulated_vehicle(self.core)
-        self.commands = Commands(scene, self.vehicle, scene.inputs_on_grid())
-        self.first = self.commands.first_row()
-        self.plant: ArticulatedPlant = start_plant(scene, self.vehicle, self.first)
+        self.slips = scene.slips_on_hinges
         self._watched = watched_hinges(scene)
+        if self.slips:
+            self.vehicle = vehicle = scene.slipping_vehicle(self.core)
+            self.commands = commands = SlippingCommands(scene, vehicle, scene.inputs_on_grid())
+            self.first = vehicle.input_row({"steering_angle_rad": (angles := commands.start_angles())})
+            self.plant = start_slipping(scene, vehicle, angles)
+        else:
+            self.vehicle = scene.articulated_vehicle(self.core)
+            self.commands = Commands(scene, self.vehicle, scene.inputs_on_grid())
+            self.first = self.commands.first_row()
+            self.plant = start_plant(scene, self.vehicle, self.first)
+
+    def start_angles(self) -> list[float]:
+        """Of the hinges of a vehicle that slips, as commanded."""
+        return [float(each) for each in self.first[len(self.first) - max_bodies(self.core):][: self.vehicle.body_count]]
 
     def steps(self, count: int, *, moves: bool = True) -> Iterator[np.ndarray]:
         """Inputs at the start and end of each step, (2, numbers of a row), after the vehicle has taken it (`moves`).
@@ -54,16 +84,24 @@ class HingedTwin:
         RunEnds where a limit or a stop ends the run. A step that the core refuses is given all the same: the node must
         refuse it, too."""
         for first in range(0, count, CHUNK):
-            table = self.commands.rows(first, min(CHUNK, count - first))
-            for row in table:
+            for row in self._rows(first, min(CHUNK, count - first)):
                 if moves:
                     self._take(row)
                 yield row
             if self.commands.refused:
                 raise RunEnds(self.commands.refused.message)
 
+    def _rows(self, first: int, count: int) -> np.ndarray:
+        """On ground with friction inputs are held: those of the start are those of the end."""
+        if isinstance(self.commands, SlippingCommands):
+            return np.repeat(self.commands.held_rows(first, count)[:, None], 2, axis=1)
+        return self.commands.rows(first, count)
+
     def _take(self, row: np.ndarray) -> None:
         try:
+            if isinstance(self.plant, SlippingPlant):
+                follow(self.plant, row)
+                return
             follow_rows(self.plant, row[None], self._watched)
         except Refused as refused:
             if refused.status == "hinge at stop":
@@ -86,6 +124,14 @@ class HingedTwin:
         return {name: slice(end - size, end) for (name, size), end in zip(sizes.items(), ends, strict=True)}
 
 
+def follow(plant: HingedPlant, rows: np.ndarray) -> None:
+    """One step along inputs at its start and end."""
+    if isinstance(plant, SlippingPlant):
+        plant.follow(rows[1:])
+    else:
+        plant.follow(rows[None])
+
+
 # ---- parameters
 
 def load_hinged(node: NodeClient, twin: HingedTwin, more: Iterable[Parameter] = ()) -> None:
@@ -95,6 +141,10 @@ def load_hinged(node: NodeClient, twin: HingedTwin, more: Iterable[Parameter] = 
     if not identity.hinges:
         raise BadInput(f"{scene.path}: the node does not take vehicles with hinges; use one that is built with "
                        "LACONIC_NODE_WITH_HINGES=1, such as --board an386-hinges")
+    if twin.slips and not identity.slip:
+        raise BadInput(f"{scene.path}: ground.friction_coefficient: the node takes vehicles with hinges on "
+                       "ideal ground alone; use one that is built with LACONIC_NODE_WITH_SLIP=1, such as --board "
+                       "an386-slip, or take it out")
     if identity.real != scene.run.real:
         raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
                        f"give --real {identity.real}, or another node")
@@ -106,9 +156,11 @@ def load_hinged(node: NodeClient, twin: HingedTwin, more: Iterable[Parameter] = 
 
 def hinged_parameters(twin: HingedTwin) -> Iterator[Parameter]:
     """All parameters of a vehicle with hinges, its start and its run."""
-    given, vehicle, core = given_start(twin.scene, twin.vehicle), twin.vehicle, twin.core
-    start = core.ffi.new("laconic_start *", {name: given[name] for name in ("x_m", "y_m", "heading_rad")})
-    yield from vehicle_parameters(core, vehicle.c.base, start)
+    vehicle, core = twin.vehicle, twin.core
+    given = given_slipping(twin) if twin.slips else given_start(twin.scene, vehicle)
+    start = core.ffi.new("laconic_start *", {
+        name: given[name] for name in ("x_m", "y_m", "heading_rad", "wheel_speed_rad_per_s") if name in given})
+    yield from vehicle_parameters(core, vehicle.c.base, start, with_drive=twin.slips)
     yield "METHOD", 0, method_names().index(twin.scene.run.method)
     yield "STEP", 0, twin.scene.run.step_s
     yield "BODY_COUNT", 0, vehicle.body_count
@@ -129,6 +181,33 @@ def hinged_parameters(twin: HingedTwin) -> Iterator[Parameter]:
         yield from ((field, item, float(value)) for item, value in enumerate(values, 1) if value)
     if given["yaw_rate_rad_per_s"]:
         yield "START_YAW_RATE", 0, float(given["yaw_rate_rad_per_s"])
+    if isinstance(vehicle, SlippingVehicle):
+        yield from _slipping_parameters(vehicle)
+
+
+def _slipping_parameters(vehicle: SlippingVehicle) -> Iterator[Parameter]:
+    """What ground with friction reads besides."""
+    all_items = ((hinge_keys(vehicle.core), vehicle.tree.hinge, vehicle.body_count),
+                 (wheel_keys(vehicle.core), vehicle.tree.wheel, vehicle.wheel_count))
+    for keys, items, count in all_items:
+        for at in range(count):
+            for key, kind in keys.items():
+                if value := getattr(items[at], key):
+                    yield TREE_FIELDS[key], at + 1, int(value) if kind == "flag" else float(value)
+
+
+def given_slipping(twin: HingedTwin) -> dict[str, Any]:
+    """The numbers of the start of a scene on ground with friction; BadInput for one that has no parameter."""
+    scene, start = twin.scene, twin.scene.initial
+    moves = any((*start.velocity_body_m_per_s, start.yaw_rate_rad_per_s))
+    if start.wheel_speed_rad_per_s and not any(start.wheel_speed_rad_per_s) and moves:
+        raise BadInput(f"{scene.path}: initial.wheel_speed_rad_per_s: a node takes wheels that all stand on a vehicle "
+                       "that moves as wheels that roll; give one of them a speed such as 1e-9, or run laconic simulate")
+    return {"velocity_m_per_s": start.velocity_body_m_per_s, "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s,
+            "x_m": start.x_m, "y_m": start.y_m, "heading_rad": start.heading_rad,
+            "hinge_angle_rad": twin.start_angles(),
+            "hinge_rate_rad_per_s": [hinge.start_rate_rad_per_s for hinge in scene.hinges],
+            "wheel_speed_rad_per_s": start.wheel_speed_rad_per_s or ()}
 
 
 # ---- frames
@@ -150,7 +229,7 @@ def count_of_hinged_frames(scene: Scene, frames: Sequence[str]) -> int:
     return sum(each[name] for name in HINGED_FRAMES if name in frames)
 
 
-def values_with_hinges(plant: ArticulatedPlant, frame: Frame, group: int) -> dict[str, float]:
+def values_with_hinges(plant: HingedPlant, frame: Frame, group: int) -> dict[str, float]:
     """The values of a frame of a vehicle with hinges, in the units of its signals."""
     now, wrapped = plant.motion(), plant.core.lib.laconic_angle_wrapped
     if frame.name == "POSE":
@@ -177,6 +256,7 @@ class NodeInputs:
 
     def __init__(self, twin: HingedTwin):
         self.core, self._vehicle = twin.core, twin.vehicle
+        self._targets = targets_of(twin)
         self._start = resting_row(twin)
         self._end = self._start.copy()
         self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
@@ -195,6 +275,11 @@ class NodeInputs:
             return
         first = WHEELS_A_GROUP * (page % 3)
         count = min(WHEELS_A_GROUP, self._vehicle.body_count - first)
+        if self._targets is not None and page < 3:
+            for slot, target in zip(self._targets[first : first + count], numbers, strict=False):
+                if slot is not None:
+                    self._start[slot] = self._end[slot] = target
+            return
         for row in (self._start, self._end) if page >= 3 else (self._end,):
             at = self._at["hinge_voltage_V" if page >= 3 else "hinge_rate_rad_per_s"] + first
             row[at : at + count] = numbers[:count]
@@ -231,11 +316,16 @@ class Steering:
 
     def __init__(self, node: NodeClient, twin: HingedTwin):
         self.node, self.overranges, self._inputs = node, 0, NodeInputs(twin)
+        self._targets = targets_of(twin)
         self._vehicle, self._frame = twin.vehicle, wire()["STEERING"]
         self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
         kinds = [hinge.kind for hinge in twin.scene.hinges]
-        self.pages = [page + first for first, kind in ((0, "prescribed"), (3, "motor")) for page in range(3)
-                      if kind in kinds[WHEELS_A_GROUP * page : WHEELS_A_GROUP * (page + 1)]]
+        of_rates = [kind == "prescribed" for kind in kinds]
+        if self._targets is not None:
+            of_rates = [slot is not None for slot in self._targets]
+        of_pages = ((0, of_rates), (3, [kind == "motor" for kind in kinds]))
+        self.pages = [page + first for first, chosen in of_pages for page in range(3)
+                      if any(chosen[WHEELS_A_GROUP * page : WHEELS_A_GROUP * (page + 1)])]
         self.pages += [TWIST_PAGE] if twin.vehicle.is_coordinated else []
 
     def send(self, wanted: np.ndarray, base: np.ndarray, *, sync: bool = True) -> np.ndarray:
@@ -260,14 +350,38 @@ class Steering:
             largest = self._frame.fields["twist_1"]
             size = float(np.abs(twist).max()) or 1.0
             return [float(each) / size * largest.largest * largest.scale for each in twist]
+        if self._targets is not None and page < 3:
+            slots = [*self._targets, *[None] * WHEELS_A_GROUP][first : first + WHEELS_A_GROUP]
+            return [0.0 if slot is None else float(wanted[1, slot]) for slot in slots]
         at = self._at["hinge_voltage_V" if page >= 3 else "hinge_rate_rad_per_s"] + first
         hinges = self._vehicle.body_count
         return [float(wanted[int(page < 3), at + k]) if first + k < hinges else 0.0 for k in range(WHEELS_A_GROUP)]
 
 
-def run_commanded(plant: ArticulatedPlant, now: np.ndarray, command: np.ndarray | None, steps: int) -> np.ndarray:
+def targets_of(twin: HingedTwin) -> list[int | None] | None:
+    """Where each hinge takes its command on ground with friction, as the node has it: the number of a prescribed rate,
+    of the angle of a servo or loop, or else of its rate. None: on ideal ground."""
+    vehicle = twin.vehicle
+    if not isinstance(vehicle, SlippingVehicle):
+        return None
+    rates, angles = vehicle.slots("steering_rate_rad_per_s"), vehicle.slots("steering_angle_rad")
+    found: list[int | None] = []
+    for at in range(vehicle.body_count):
+        of = vehicle.tree.hinge[at]
+        by_rate = of.servo_damping_Nms or of.loop_Vs_per_rad
+        by_angle = of.servo_gain_Nm_per_rad or of.loop_V_per_rad
+        prescribed = vehicle.model.body[at + 1].hinge == vehicle.core.lib.LACONIC_HINGE_PRESCRIBED
+        found.append(angles[at] if by_angle else rates[at] if by_rate or prescribed else None)
+    return found
+
+
+def run_commanded(plant: HingedPlant, now: np.ndarray, command: np.ndarray | None, steps: int) -> np.ndarray:
     """So many steps as the node takes them; the inputs that act then. With a new command (inputs at start and end) the
     first goes from the present rates and twist to its own, and later ones hold them."""
+    if isinstance(plant, SlippingPlant):
+        row = np.atleast_2d(now if command is None else command)[-1]
+        plant.run(row, steps)
+        return np.asarray(row)
     if command is not None and steps > 0:
         start = command[1].copy()
         for name in ("hinge_rate_rad_per_s", "twist"):
@@ -287,9 +401,11 @@ def _dot(a: np.ndarray, b: np.ndarray) -> Any:
 def raw_columns(twin: HingedTwin, groups: Sequence[str]) -> list[int]:
     """Indices of the chosen hinges' numbers in a row of laconic_articulated_input."""
     columns: list[int] = []
-    for bit in groups:
+    for bit in (each for each in groups if each != RAW_ANGLES):
         start, _ = member_of(twin.core, RAW_INPUTS[bit])
         columns += range(start, start + (3 if bit == "take_twist" else twin.vehicle.body_count))
+    if isinstance(twin.vehicle, SlippingVehicle) and RAW_ANGLES in groups:
+        columns += twin.vehicle.slots("steering_angle_rad")
     return columns
 
 
@@ -298,5 +414,6 @@ def raw_groups(twin: HingedTwin) -> list[str]:
     names = {each.signal.partition("[")[0] for each in twin.scene.inputs}
     kinds = {hinge.kind for hinge in twin.scene.hinges}
     chosen = {"take_hinge_voltage": "hinge_voltage_V" in names, "take_hinge_torque": "hinge_torque_Nm" in names,
-              "take_hinge_rate": "prescribed" in kinds, "take_twist": "coordinated" in kinds}
+              "take_hinge_rate": "prescribed" in kinds or twin.slips,
+              "take_twist": "coordinated" in kinds and not twin.slips, RAW_ANGLES: twin.slips}
     return [bit for bit, is_chosen in chosen.items() if is_chosen]

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from laconic.can.rig.client import NodeClient
-from laconic.can.rig.latency import latency_figures
-from laconic.can.rig.lockstep import LockstepRun, run_lockstep, twin_states
+from laconic.can.rig.lockstep import LockstepRun, latency_figures, run_lockstep, twin_states
 from laconic.can.rig.scaled import Comparison, ScaledRun, rounding_limit, run_scaled
 from laconic.can.rig.sensed import has_sensors
-from laconic.can.rig.trial import Moved, Trial, driven
-from laconic.can.rig.verdict import Judgement, Verdict, same_bits, within
+from laconic.can.rig.verdict import Judgement, Moved, Trial, Verdict, driven, same_bits, within
 from laconic.scene import Scene
 
 

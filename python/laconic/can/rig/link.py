@@ -9,10 +9,9 @@ from collections.abc import Callable
 import can
 from can.interfaces.slcan import slcanBus
 
-from laconic.can.rig.codes import Codes
 from laconic.can.rig.errors import BusDied, in_words
 from laconic.can.rig.node_library import E2E_STATUS, node_library
-from laconic.can.rig.session import Session
+from laconic.can.rig.session import Codes, Session
 from laconic.can.rig.wire import ID_BASE, Frame, wire
 
 Received = tuple[Frame, bytes]

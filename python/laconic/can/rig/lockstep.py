@@ -4,22 +4,23 @@
         run = run_lockstep(node, scene, steps=10_000)
     run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type,
                      in the order of Plant.row(); then what the scene's sensors show
+
+Latency of answers: figures over all exchanges of a run.
 """
 
 from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from laconic.can.rig.client import Identity, NodeClient
+from laconic.can.rig.client import Identity, NodeClient, is_estimated
 from laconic.can.rig.errors import NodeSilent
-from laconic.can.rig.estimated import is_estimated
 from laconic.can.rig.hinged import RAW_OUTPUTS, HingedTwin, load_hinged, raw_columns, raw_groups
 from laconic.can.rig.parameters import Parameter, method_number
 from laconic.can.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
@@ -220,17 +221,18 @@ class HingedStream(RawStream):
         self.groups = self.groups or ["take_voltage"]
         self.of_hinges = raw_groups(twin)
         self.columns = np.array([*self._columns(scene.wheel_count), *raw_columns(twin, self.of_hinges)], dtype=int)
-        self.row_length, self.has_sensors, self.sampled = len(twin.raw_row()), False, True
+        self.row_length, self.has_sensors, self.sampled = len(twin.raw_row()), False, not twin.slips
 
     def select(self) -> None:
         """Selects the numbers that go over the bus."""
-        self.node.select(**dict.fromkeys([*self.groups, *self.of_hinges, *RAW_OUTPUTS, "take_sampled"], 1),
+        sampled = ["take_sampled"] if self.sampled else []
+        self.node.select(**dict.fromkeys([*self.groups, *self.of_hinges, *RAW_OUTPUTS, *sampled], 1),
                          raw_fd=int(self.fd))
 
     def exchanges(self, steps: int, every: int) -> Iterator[tuple[int, int, np.ndarray | None]]:
         """One step each, with the rows of its start and end."""
         for at, rows in enumerate(self.twin.steps(steps)):
-            yield at, 1, rows.astype(self.core.dtype)
+            yield at, 1, (rows if self.sampled else rows[1]).astype(self.core.dtype)
 
 
 def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
@@ -285,3 +287,22 @@ def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:
         rows.append(row)
         done = int(tick)
     return np.array(rows)
+
+
+def latency_figures(seconds: Sequence[float]) -> dict[str, float]:
+    """Round trips in microseconds: least, median, 99th percentile, worst, and jitter (standard deviation)."""
+    if not len(seconds):
+        return {}
+    micro = 1e6 * np.asarray(seconds, float)
+    return {
+        "latency_min_us": float(micro.min()), "latency_median_us": float(np.median(micro)),
+        "latency_p99_us": float(np.percentile(micro, 99)), "latency_max_us": float(micro.max()),
+        "latency_jitter_us": float(micro.std())}
+
+
+def period_figures(instants_s: Sequence[float], period_s: float) -> dict[str, float]:
+    """Deviation of the intervals between cyclic frames from their period, in microseconds."""
+    if len(instants_s) < 2:
+        return {}
+    off = 1e6 * (np.diff(np.asarray(instants_s, float)) - period_s)
+    return {"period_us": 1e6 * period_s, "period_jitter_us": float(off.std()), "period_late_max_us": float(off.max())}

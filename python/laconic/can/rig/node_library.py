@@ -9,8 +9,7 @@ import can
 from cffi import FFI
 
 from laconic.base.paths import built, library
-from laconic.can.rig.frames import FrameBox
-from laconic.can.rig.wire import ID_BASE
+from laconic.can.rig.wire import ID_BASE, FrameBox
 
 
 class NodeLibrary:

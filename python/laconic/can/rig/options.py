@@ -11,7 +11,7 @@ from laconic.can.rig.boards import own_node
 from laconic.can.rig.bus_options import read_bus_options
 from laconic.can.rig.buses import connected
 from laconic.can.rig.client import NodeClient
-from laconic.can.rig.codes import read_key
+from laconic.can.rig.session import read_key
 from laconic.can.rig.wire import ID_BASE, ID_STRIDE
 from laconic.errors import BadInput
 from laconic.pictures.views.recorded import Recorded

@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.can.rig.buses import next_channel
 from laconic.can.rig.client import NodeClient
-from laconic.can.rig.hinged import HINGED_FRAMES, HingedTwin, NodeInputs, signals_of_page
+from laconic.can.rig.hinged import HINGED_FRAMES, HingedPlant, HingedTwin, NodeInputs, follow, signals_of_page
 from laconic.can.rig.judge import link_verdict, signal_verdicts
 from laconic.can.rig.link import Link
 from laconic.can.rig.logs import was_closed
@@ -19,7 +19,6 @@ from laconic.can.rig.scaled import Comparison
 from laconic.can.rig.session import Effect, Follower
 from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.can.rig.wire import wire
-from laconic.core.articulated import ArticulatedPlant
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
 from laconic.robot.logs.can_frames import LoggedFrame, read_frames
@@ -34,7 +33,7 @@ class LogPlayer:
     def __init__(self, scene: Scene, id_base: int, link: Link):
         self.scene, self.id_base, self.link = scene, id_base, link
         hinged = HingedTwin(scene) if scene.has_hinges else None
-        self.plant: Plant | ArticulatedPlant = hinged.plant if hinged else scene.plant(scene.core())
+        self.plant: Plant | HingedPlant = hinged.plant if hinged else scene.plant(scene.core())
         self.inputs = NodeInputs(hinged) if hinged else None
         self.row = np.zeros(self.plant.core.input_length, self.plant.core.dtype)
         self.comparison = Comparison(scene.wheel_count)
@@ -85,10 +84,10 @@ class LogPlayer:
             self._step(raw["step_count"])
 
     def _step(self, steps: int) -> None:
-        if isinstance(self.plant, ArticulatedPlant):
+        if isinstance(self.plant, HingedPlant):
             assert self.inputs is not None
             rows = self.inputs.stepped()
-            self.plant.follow(rows[None])
+            follow(self.plant, rows)
             self.plant.run(rows[1], steps - 1)
         else:
             self.plant.run(self.plant.core.input(self.row), steps)

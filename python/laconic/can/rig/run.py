@@ -7,19 +7,15 @@ from contextlib import contextmanager
 
 from laconic.base.progress import progress_bar
 from laconic.can.rig.bagged import viewed
-from laconic.can.rig.client import NodeClient
-from laconic.can.rig.errors import Interrupted
-from laconic.can.rig.estimated import is_estimated, read_estimate
+from laconic.can.rig.client import RUNNING, NodeClient, come_to_rest, is_estimated, read_estimate, stop_running
+from laconic.can.rig.errors import Interrupted, Interruption
 from laconic.can.rig.free_judge import Free
-from laconic.can.rig.interruption import Interruption
 from laconic.can.rig.judge import SameBits, Scaled
 from laconic.can.rig.live import live_view
 from laconic.can.rig.logs import Lost, logged
 from laconic.can.rig.options import Options, node_for, read_id_base
 from laconic.can.rig.scaled import read_tolerances
-from laconic.can.rig.stopping import RUNNING, come_to_rest, stop_running
-from laconic.can.rig.trial import Moved, Trial
-from laconic.can.rig.verdict import Judgement, Verdict
+from laconic.can.rig.verdict import Judgement, Moved, Trial, Verdict
 from laconic.scene import Scene
 
 

@@ -15,10 +15,12 @@ from laconic.can.rig.errors import NodeSilent
 from laconic.can.rig.hinged import (
     HINGED_ANSWERS,
     HINGED_FRAMES,
+    HingedPlant,
     HingedTwin,
     Steering,
     check_hinged_frames,
     count_of_hinged_frames,
+    follow,
     load_hinged,
     values_with_hinges,
 )
@@ -37,7 +39,6 @@ from laconic.can.rig.sensed import (
     wrap_of,
 )
 from laconic.can.rig.wire import Frame, wire
-from laconic.core.articulated import ArticulatedPlant
 from laconic.errors import BadInput, nearest_of
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
@@ -186,7 +187,7 @@ class Voltages:
 def expected_raw(twin: Twin, frame: Frame, group: int = 0) -> dict[str, float]:
     """The twin's values of a frame, in units of the raw values, before rounding."""
     values: Mapping[str, float]
-    if isinstance(twin, ArticulatedPlant):
+    if isinstance(twin, HingedPlant):
         values = values_with_hinges(twin, frame, group)
         return {name: value / frame.fields[name].scale for name, value in values.items()}
     plant = plant_of(twin)
@@ -284,8 +285,8 @@ class ScaledRun:
         twin = self.twin
         comparison = Comparison(self.wheel_count)
         for row, answer in self.exchanges:
-            if isinstance(twin, ArticulatedPlant):
-                twin.follow(row[None])
+            if isinstance(twin, HingedPlant):
+                follow(twin, row)
             else:
                 twin.run(plant_of(twin).core.input(row))
             for frame, data in answer:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from laconic.can.rig.hinged import HingedPlant
 from laconic.can.rig.parameters import Parameter
 from laconic.can.rig.wire import Frame
-from laconic.core.articulated import ArticulatedPlant
 from laconic.core.encoders import signed
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors, values_of
@@ -23,7 +23,7 @@ RAW_OF_SENSORS = ("raw_imu", "raw_encoder")
 INDEX_TURNS = 2**16                             # of ENCODER.index_count
 WHOLE_COUNT = 2**32                             # where an encoder wraps without a setting
 
-Twin = Plant | Sensors | ArticulatedPlant
+Twin = Plant | Sensors | HingedPlant
 """What is stepped beside a node: a plant, the sensors that watch it, or a vehicle with hinges."""
 
 
@@ -51,14 +51,14 @@ def twin_of(scene: Scene, plant: Plant, frames: Iterable[str] = ()) -> Twin:
 
 def plant_of(twin: Twin) -> Plant:
     """The plant itself, of a vehicle without hinges."""
-    if isinstance(twin, ArticulatedPlant):
+    if isinstance(twin, HingedPlant):
         raise TypeError("a vehicle with hinges is stepped by itself")
     return twin.plant if isinstance(twin, Sensors) else twin
 
 
-def moving(twin: Twin) -> Plant | ArticulatedPlant:
+def moving(twin: Twin) -> Plant | HingedPlant:
     """What takes the steps."""
-    return twin if isinstance(twin, ArticulatedPlant) else plant_of(twin)
+    return twin if isinstance(twin, HingedPlant) else plant_of(twin)
 
 
 def check_frames(scene: Scene, frames: Iterable[str]) -> None:

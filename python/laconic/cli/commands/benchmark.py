@@ -78,14 +78,14 @@ def _step(lanes: int, rounds: int) -> Found:
 
 
 def _batch(lanes: int, rounds: int) -> Found:
-    from laconic.tools.report.many import energy, race
+    from laconic.tools.report.many import race
 
     try:
         rows = race.rows(lanes, rounds)
     except race.Disagreement as error:
         raise LaconicError(f"{error}; nothing was timed") from None
     notes = [f"not installed, so not compared: {name} (docs/performance.md tells how)" for name in race.missing_peers()]
-    return rows, notes if rows[0]["nJ_per_step"] is not None else [*notes, energy.UNREADABLE]
+    return rows, notes if rows[0]["nJ_per_step"] is not None else [*notes, race.UNREADABLE]
 
 
 def _learn(lanes: int, rounds: int) -> Found:

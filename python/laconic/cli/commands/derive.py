@@ -56,7 +56,7 @@ def command(scene: str | None, example: str | None, latex: bool, in_c: bool, out
 def _of_example(name: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.tools.derive import printing, vehicles
     from laconic.tools.derive.brackets import bracketed
-    from laconic.tools.derive.checks import forms_difference
+    from laconic.tools.derive.scene_check import forms_difference
 
     systems = {
         "caster": vehicles.caster,
@@ -75,8 +75,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.scene.ground import check_ideal_ground, check_rolling
     from laconic.tools.analyse.from_core import subject_of
     from laconic.tools.derive import printing
-    from laconic.tools.derive.checks import forms_difference
-    from laconic.tools.derive.scene_check import core_difference
+    from laconic.tools.derive.scene_check import core_difference, forms_difference
     from laconic.tools.derive.scene_system import carriage_of, derive
 
     scene = read_scene(given)

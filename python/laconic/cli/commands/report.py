@@ -33,8 +33,7 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     """
     from laconic.tools.report.collect import collect
     from laconic.tools.report.robot import collect_robots
-    from laconic.tools.report.tables import goal_table, robot_tables
-    from laconic.tools.report.writing import write
+    from laconic.tools.report.writing import goal_table, robot_tables, write
 
     folder = out or results_dir("report")
     read = [read_scene(name) for name in scenes or rigid_scene_names()]

@@ -133,8 +133,8 @@ def drive(scene: Scene, options: Options) -> int:
 
 def rest(scene_name: str | None, options: Options, with_reset: bool) -> int:
     """--stop and --reset: no run, a node at rest."""
+    from laconic.can.rig.client import stop_and_reset
     from laconic.can.rig.options import in_hex, node_for, read_id_base
-    from laconic.can.rig.stopping import stop_and_reset
 
     if options.interface is None:
         raise BadInput(f"{'--reset' if with_reset else '--stop'}: give the --interface and --channel of the node")

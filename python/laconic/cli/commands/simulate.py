@@ -108,8 +108,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     for fold in run.folded:
         warn(f"{given.path}: {fold.in_words()}")
     if run.least_margin and run.least_margin[0] < 0.0:
-        warn(f"{given.path}: the ground cannot give what this run needs: at {run.least_margin[1]:g} s a wheel would "
-             f"slip, by {-run.least_margin[0]:.3g} N")
+        margin, time_s, wheel = run.least_margin
+        warn(f"{given.path}: the ground cannot give what this run needs: worst at {time_s:g} s, where wheel {wheel} "
+             f"would slip, by {-margin:.3g} N")
     if run.lifted:
         wheel, time_s = run.lifted
         warn(f"{given.path}: at {time_s:g} s wheel {wheel} lifts from the ground; the run holds the vehicle level")
@@ -231,8 +232,8 @@ def margin_json(run: Trajectory) -> dict[str, Any] | None:
     """The least distance from slip of a run with hinges, judged by loads at rest; None where no friction is known."""
     if run.least_margin is None:
         return None
-    margin, time_s = run.least_margin
-    return {"holds": margin >= 0.0, "least_margin_N": margin, "time_s": time_s}
+    margin, time_s, wheel = run.least_margin
+    return {"holds": margin >= 0.0, "least_margin_N": margin, "time_s": time_s, "wheel": wheel}
 
 
 def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:

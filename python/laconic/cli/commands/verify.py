@@ -19,11 +19,12 @@ from laconic.errors import BadInput
 from laconic.scene import METHODS, read_scene
 from laconic.scene.table import Table as Case
 from laconic.tools.verify.articulated import ArticulatedResult, verify_articulated_case
-from laconic.tools.verify.enclosed_result import EnclosedResult, bound_text
 from laconic.tools.verify.slipping import SlippingResult, is_slipping, verify_slipping_case
 from laconic.tools.verify.trajectories import (
     CaseResult,
+    EnclosedResult,
     as_json,
+    bound_text,
     is_articulated,
     read_reference,
     verify_case,
@@ -112,7 +113,7 @@ def verify_enclosed(core: Core, case: Case, method: str, step_s: float, advance:
 def verify_scene(name: str, method: str | None, step_s: float | None, real: str | None, tolerance: float | None,
                  json_wanted: bool) -> int:
     """A scene's run against its enclosure; the exit status."""
-    from laconic.tools.enclosure.scene_case import verify_scene_enclosed
+    from laconic.tools.enclosure.study import verify_scene_enclosed
 
     scene = read_scene(name).with_run(method=method, step_s=step_s, real=real)
     return told([verify_scene_enclosed(scene)], tolerance, (scene.run.method, scene.run.step_s, scene.run.real),

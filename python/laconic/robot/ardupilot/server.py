@@ -19,8 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from laconic.can.rig.errors import Interrupted
-from laconic.can.rig.interruption import Interruption
+from laconic.can.rig.errors import Interrupted, Interruption
 from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.errors import BadInput, Refused, reason_of
 from laconic.robot.ardupilot.vehicle import (

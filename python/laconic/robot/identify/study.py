@@ -23,8 +23,8 @@ from laconic.robot.replay.missed_wraps import fitting
 from laconic.robot.replay.predicted import predict
 from laconic.robot.replay.steered_signals import Fitted, of_log
 from laconic.scene import Scene
+from laconic.scene.drives import SpeedController
 from laconic.scene.ground import slips
-from laconic.scene.speed_controller import SpeedController
 
 LEFT_OUT = ("session", "run")
 

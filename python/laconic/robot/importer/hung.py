@@ -17,8 +17,7 @@ import numpy as np
 from laconic.core.spelling import wrapped
 from laconic.robot.importer.axle_lines import lines_of, straightened
 from laconic.robot.importer.placement import Array
-from laconic.robot.importer.rigid_body import RigidBody, add_up
-from laconic.robot.importer.robot_tree import BALL, Joint, Link, Robot
+from laconic.robot.importer.robot_tree import BALL, Joint, Link, RigidBody, Robot, add_up
 from laconic.robot.importer.steering import FULL_RAD, NEAR, foot_of, has_no_trail, kind_of, swivels, turntables
 from laconic.robot.importer.wheels import FoundWheel, Ground
 from laconic.scene.axle_lines import WITHIN_RAD, are_parallel, common_line

@@ -18,7 +18,7 @@ from laconic.errors import BadInput, Refused
 from laconic.robot.importer.first_run import Promise
 from laconic.robot.importer.hung import CARRIAGE, COORDINATED, FREE, PRESCRIBED, HungBody, rolling_of
 from laconic.robot.importer.hung_scene import Placed, rate_of
-from laconic.robot.importer.rigid_body import RigidBody
+from laconic.robot.importer.robot_tree import RigidBody
 from laconic.scene import scene_of
 from laconic.scene.table import Table
 

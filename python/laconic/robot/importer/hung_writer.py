@@ -14,7 +14,7 @@ from laconic.robot.importer.hung import ahead_of, hung_of, links_of_carriage
 from laconic.robot.importer.hung_push import SHORTEST_S, STEP_S, Plan, drive, shortened
 from laconic.robot.importer.hung_scene import HungTables, rigid_table
 from laconic.robot.importer.imported_scene import Imported, Writer, _rounded, in_one_line
-from laconic.robot.importer.rigid_body import add_up
+from laconic.robot.importer.robot_tree import add_up
 from laconic.robot.importer.rollers import Kind
 from laconic.robot.importer.supports import find_supports
 from laconic.robot.importer.wheels import FoundWheel

@@ -30,8 +30,7 @@ from laconic.robot.importer.push import (
     push,
     tables_of,
 )
-from laconic.robot.importer.rigid_body import RigidBody, add_up
-from laconic.robot.importer.robot_tree import Robot
+from laconic.robot.importer.robot_tree import RigidBody, Robot, add_up
 from laconic.robot.importer.rollers import Kind, kinds_of
 from laconic.robot.importer.supports import Support, find_supports
 from laconic.robot.importer.surfaces import grips_along

@@ -1,11 +1,13 @@
 """MJCF, read by MuJoCo: its compiler resolves defaults, includes, frames and the inertia of geoms without a mass.
 
 It works in a process that is bounded in time and memory: a file of a few lines can ask for any number of bodies.
+
+Files that an MJCF model names: none is opened that lies outside the robot's folder.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot.importer.bounded import Library, bounded
 from laconic.robot.importer.checked import DISSIPATION, finite, mass, not_negative, words_of
-from laconic.robot.importer.mjcf_files import check_files
+from laconic.robot.importer.meshes import is_inside, own_folders
 from laconic.robot.importer.mjcf_left_out import commands_of, left_out
 from laconic.robot.importer.placement import Array, inverse, placement, point_of
 from laconic.robot.importer.robot_tree import (
@@ -30,7 +32,58 @@ from laconic.robot.importer.robot_tree import (
     Shape,
     check_count,
 )
-from laconic.robot.importer.xml_file import bytes_of, xml_root
+from laconic.robot.importer.xml_file import Element, bytes_of, root_of, xml_root
+
+OF_MESHES = ("meshdir", "assetdir")
+FOLDERS = {"mesh": OF_MESHES, "hfield": OF_MESHES, "skin": OF_MESHES, "flexcomp": OF_MESHES,
+           "texture": ("texturedir", "assetdir")}
+MOST_FILES = 1000  # that include each other
+
+
+def check_files(path: Path, packages: Mapping[str, Path]) -> None:
+    """BadInput for a mesh, texture or included file that lies elsewhere; `packages`: folders that may be read, too."""
+    inside = [*own_folders(path), *packages.values()]
+    models = {path.resolve(): path}
+    for model in (waiting := [path]):  # which grows meanwhile
+        for other in _check_model(path, model, inside):
+            if other.is_file() and other.resolve() not in models and len(models) < MOST_FILES:
+                models[other.resolve()] = other
+                waiting.append(other)
+
+
+def _check_model(path: Path, model: Path, inside: list[Path]) -> list[Path]:
+    """One model with what it includes, all relative to its folder; returns the models that it attaches."""
+    files, seen = [model], {model.resolve()}
+    elements: list[Element] = []
+    for file in files:  # which grows meanwhile
+        root = root_of(file, bytes_of(file), "is no XML")
+        elements += root.iter()
+        for include in root.iter("include"):
+            named = model.parent / include.get("file", "")
+            _check(path, include, named, inside)
+            if named.is_file() and named.resolve() not in seen and len(seen) < MOST_FILES:
+                seen.add(named.resolve())
+                files.append(named)
+    options = {key: value for each in elements if each.tag == "compiler" for key, value in each.attrib.items()}
+    for element in elements:
+        for named in _named(model.parent, element, options):
+            _check(path, element, named, inside)
+    return [model.parent / each.get("file", "") for each in elements if each.tag == "model" and each.get("file")]
+
+
+def _named(folder: Path, element: Element, options: Mapping[str, str]) -> Iterator[Path]:
+    """The files that an element names."""
+    base = next((options[key] for key in FOLDERS.get(element.tag, ()) if key in options), "")
+    for key, value in element.attrib.items():
+        if key.startswith("file") and value:
+            yield folder / base / (Path(value).name if options.get("strippath") == "true" else value)
+
+
+def _check(path: Path, element: Element, named: Path, inside: list[Path]) -> None:
+    if not is_inside(named, inside):
+        raise BadInput(f"{path}: <{element.tag}> {element.get('file', '')}: lies outside the robot's folder and is "
+                       "not opened; --package NAME=FOLDER says where it may lie")
+
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
 SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom

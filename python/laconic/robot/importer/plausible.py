@@ -6,8 +6,7 @@ import numpy as np
 
 from laconic.robot.importer.answers import Answers, answer
 from laconic.robot.importer.axle_lines import lines_of
-from laconic.robot.importer.rigid_body import RigidBody
-from laconic.robot.importer.robot_tree import Link, Robot
+from laconic.robot.importer.robot_tree import Link, RigidBody, Robot
 from laconic.robot.importer.wheels import Ground
 from laconic.scene.axle_lines import grouped
 

@@ -16,7 +16,7 @@ from laconic.robot.importer.answers import Answers, answer
 from laconic.robot.importer.axle_lines import lines_of, nearly_meet
 from laconic.robot.importer.placement import rotation_about
 from laconic.robot.importer.surfaces import grips_along
-from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST
+from laconic.robot.importer.wheel_shape import ROLLERS_AT_LEAST
 from laconic.robot.importer.wheels import FoundWheel
 from laconic.scene.axle_lines import WITHIN_RAD, common_line, grouped, meeting_point, misses_by
 

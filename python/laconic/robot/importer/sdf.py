@@ -24,7 +24,6 @@ from laconic.robot.importer.checked import (
 from laconic.robot.importer.commands import commands_of, with_mimics
 from laconic.robot.importer.gravity import gravity_left_out, listed
 from laconic.robot.importer.meshes import MeshFiles
-from laconic.robot.importer.once import refuse_doubled, what_is_doubled
 from laconic.robot.importer.placement import (
     IDENTITY,
     Array,
@@ -53,7 +52,7 @@ from laconic.robot.importer.robot_tree import (
 from laconic.robot.importer.sdf_nested import OLD_AXES, flatten, take_includes
 from laconic.robot.importer.sdf_tree import tree_of
 from laconic.robot.importer.surfaces import surface_of
-from laconic.robot.importer.xml_file import Element, bytes_of, root_of
+from laconic.robot.importer.xml_file import Element, bytes_of, refuse_doubled, root_of, what_is_doubled
 
 KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
          "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}

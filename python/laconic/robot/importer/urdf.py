@@ -27,7 +27,6 @@ from laconic.robot.importer.checked import (
 )
 from laconic.robot.importer.commands import commands_of, with_mimics
 from laconic.robot.importer.meshes import MeshFiles
-from laconic.robot.importer.once import refuse_doubled, what_is_doubled
 from laconic.robot.importer.placement import IDENTITY, Array, placement, point_of, rotation_of_rpy
 from laconic.robot.importer.robot_tree import (
     BALL,
@@ -46,7 +45,7 @@ from laconic.robot.importer.robot_tree import (
     mimics,
 )
 from laconic.robot.importer.surfaces import surface_of
-from laconic.robot.importer.xml_file import Element, bytes_of, root_of
+from laconic.robot.importer.xml_file import Element, bytes_of, refuse_doubled, root_of, what_is_doubled
 
 KINDS = {"continuous": HINGE, "revolute": HINGE, "prismatic": SLIDE, "fixed": FIXED, "floating": BALL, "planar": SLIDE}
 NO_URDF = "is no URDF that can be read"

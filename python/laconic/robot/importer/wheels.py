@@ -11,12 +11,29 @@ from laconic.errors import BadInput, nearest_of
 from laconic.robot.importer.answers import Answers, answer
 from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.placement import Array
-from laconic.robot.importer.rigid_body import inertia_about_axis
-from laconic.robot.importer.robot_tree import FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape, Surface
+from laconic.robot.importer.robot_tree import (
+    FIXED,
+    HINGE,
+    SLIDE,
+    Joint,
+    Link,
+    Robot,
+    Shape,
+    Surface,
+    inertia_about_axis,
+)
 from laconic.robot.importer.steering import Swivel, is_upright, swivel_of, swivels, turntables
 from laconic.robot.importer.surfaces import is_frictionless
-from laconic.robot.importer.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
-from laconic.robot.importer.wheel_shape import Reach, chosen_shapes, reach_of, skew_of
+from laconic.robot.importer.wheel_shape import (
+    ROLLERS_AT_LEAST,
+    Reach,
+    chosen_shapes,
+    has_the_axle_of,
+    parts_of,
+    reach_of,
+    rollers_of,
+    skew_of,
+)
 
 OF_PACKAGES = ("package://", "model://")
 MOST_WHEELS = 64  # with casters; the core has room for fewer

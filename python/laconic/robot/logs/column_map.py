@@ -19,8 +19,7 @@ from laconic.robot.logs.quantity import (
     single_of,
     time_of,
 )
-from laconic.scene.map_toml import read_map_toml
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_map_toml
 
 MAPS = Path(__file__).with_name("maps")
 FORMATS = ("text", "can", "bag", "mat")

@@ -17,7 +17,7 @@ from laconic.errors import BadInput
 from laconic.robot.logs import Log
 from laconic.robot.replay.held_wheels import Vehicle, in_small_steps, intervals, mean_speeds, point_pose
 from laconic.robot.replay.steady_currents import Axles, axles_of, settled, with_torques
-from laconic.scene.speed_controller import SpeedController
+from laconic.scene.drives import SpeedController
 
 STEP_S = 0.002
 

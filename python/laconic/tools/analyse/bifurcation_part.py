@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from laconic.tools.analyse import confirm, pushed
+from laconic.tools.analyse import confirm, steady
 from laconic.tools.analyse.continuation import Diagram, diagram
 from laconic.tools.analyse.cycle import HopfPoint, cycle_near
 from laconic.tools.analyse.findings import BifurcationPart, CyclePart, Study, StudyOptions
@@ -16,8 +16,7 @@ from laconic.tools.analyse.motions import (
     parameter_named,
     straight_thresholds,
 )
-from laconic.tools.analyse.reach import HEADROOM
-from laconic.tools.analyse.speeds import command_text, motion_text, wheel_radius_m
+from laconic.tools.analyse.speeds import HEADROOM, command_text, motion_text, wheel_radius_m
 from laconic.tools.analyse.steady import steady_motions
 
 CYCLE_SHARES = (0.97,)  # of the way from the branch's other end to the Hopf point
@@ -44,7 +43,7 @@ def bifurcation_part(result: Study, options: StudyOptions) -> None:
 def _no_diagram(subject: Subject, options: StudyOptions) -> str | None:
     if not subject.of_wheels("motor_damping_Nms").any() or not subject.field({}).decay_per_s.any():
         return "No bifurcation diagram: the motors do not damp (c2 = 0), so constant inputs have no steady motion."
-    if pushed.world_force_acts(subject):
+    if steady.world_force_acts(subject):
         return "No bifurcation diagram: a force fixed in the world acts."
     inputs_zero = not any(subject.inputs.values())
     if inputs_zero and options.straight is None and options.parameter in (None, "input_scale"):

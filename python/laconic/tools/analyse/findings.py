@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.tools.analyse import confirm, pushed
+from laconic.tools.analyse import confirm
 from laconic.tools.analyse.continuation import Diagram
 from laconic.tools.analyse.cycle import HopfPoint, LimitCycle
 from laconic.tools.analyse.free_motion import FreeMotion
@@ -16,7 +16,7 @@ from laconic.tools.analyse.geometry import Geometry
 from laconic.tools.analyse.motions import Parameter
 from laconic.tools.analyse.parts import PARTS
 from laconic.tools.analyse.portrait import Portrait
-from laconic.tools.analyse.steady import Family, SteadyMotion
+from laconic.tools.analyse.steady import Family, PushedHeading, SteadyMotion
 from laconic.tools.analyse.traction import Traction
 
 
@@ -44,7 +44,7 @@ class SteadyPart:
     motions: list[SteadyMotion]
     confirmations: list[confirm.Confirmation]
     families: list[Family]
-    pushed: list[pushed.PushedHeading] | None = None
+    pushed: list[PushedHeading] | None = None
     inputs: dict[str, Any] = field(default_factory=dict)
 
 

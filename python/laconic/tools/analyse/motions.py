@@ -11,7 +11,7 @@ from scipy.linalg import null_space
 from laconic.errors import BadInput, shown
 from laconic.tools.analyse.field import Field
 from laconic.tools.analyse.from_core import Inputs, Subject, changed, field_of
-from laconic.tools.analyse.reach import reach_rad_per_s
+from laconic.tools.analyse.speeds import reach_rad_per_s
 from laconic.tools.analyse.steady import steady_polynomial
 
 COMMANDS = {"nu1": 0, "nu2": 1}

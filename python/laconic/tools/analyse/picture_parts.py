@@ -17,6 +17,9 @@ from laconic.tools.analyse.speeds import wheel_radius_m
 BOLD, THIN = 3.0, 1.1
 LETTERS = 68  # in a line of a title
 YAW = r"yaw rate $\omega=\nu_3/\Lambda$ [rad/s]"
+ACROSS = r"$\nu_\perp$: the part of ($\nu_1$, $\nu_2$) across the direction that turning is coupled to"
+INTEGRAL = r"$K=(A\nu)_3$ stays in free motion, as the energy does; $A$: the matrix of inertia, $A_{33}$ its last entry"
+ROLLING = r"$R\nu_1$, $R\nu_2$: velocity of the centre of mass along the body axes $\xi$, $\eta$; $R$: wheel radius"
 
 
 def head(study: Study, what: str) -> str:
@@ -65,3 +68,8 @@ def metres_beside(axes: Axes, side: Literal["top", "right"], label: str, roll: f
         axes.secondary_xaxis(side, functions=(there, back)).set_xlabel(label)
     else:
         axes.secondary_yaxis(side, functions=(there, back)).set_ylabel(label)
+
+
+def explained(label: str, integral: bool) -> str:
+    """What the symbols of a portrait mean, as far as they occur."""
+    return "\n".join([ACROSS] * ("perp" in label) + [ROLLING] + [INTEGRAL] * integral)

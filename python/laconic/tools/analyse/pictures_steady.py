@@ -17,6 +17,7 @@ from laconic.tools.analyse.picture_parts import (
     BOLD,
     THIN,
     YAW,
+    explained,
     head,
     keys,
     legend_below,
@@ -24,7 +25,6 @@ from laconic.tools.analyse.picture_parts import (
     power_aside,
     speed_axes,
 )
-from laconic.tools.analyse.pictures_free import explained
 from laconic.tools.analyse.portrait import across_direction
 from laconic.tools.analyse.speeds import wheel_radius_m
 

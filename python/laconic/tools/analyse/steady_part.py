@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from laconic.tools.analyse import confirm, pushed
+from laconic.tools.analyse import confirm, steady
 from laconic.tools.analyse.findings import SteadyPart, Study, StudyOptions
 from laconic.tools.analyse.from_core import Inputs, Subject
 from laconic.tools.analyse.motions import straight_torques
@@ -20,7 +20,7 @@ def _studied_inputs(subject: Subject, options: StudyOptions) -> Inputs:
 
 def steady_part(result: Study, options: StudyOptions) -> None:
     subject, inputs = result.subject, _studied_inputs(result.subject, options)
-    if options.straight is None and pushed.world_force_acts(subject):
+    if options.straight is None and steady.world_force_acts(subject):
         _describe_pushed(result)
         return
     if options.straight is None and subject.held:
@@ -50,7 +50,7 @@ def _complex_text(value: complex) -> str:
 
 
 def _describe_pushed(result: Study) -> None:
-    found = pushed.headings(result.subject)
+    found = steady.headings(result.subject)
     result.steady = SteadyPart([], [], [], pushed=found)
     result.add("steady", "A force fixed in the world acts: it rotates against the body, so ν has no steady value; "
                "the question is which heading the vehicle keeps.")

@@ -1,7 +1,11 @@
-"""The main job, scene by scene: same bits from all participants, errors against the reference, pictures."""
+"""The main job, scene by scene: same bits from all participants, errors against the reference, pictures.
+
+The demo's picture of one scene: path, velocities, error against run time.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -9,10 +13,18 @@ from typing import Any
 
 from laconic.base.progress import Advance
 from laconic.fmu import make_fmu
+from laconic.pictures.plotting import (
+    figure,
+    mark_ground,
+    plot_error_against_time,
+    plot_path,
+    plot_velocities,
+    save,
+    title,
+)
 from laconic.scene import Scene
-from laconic.simulation import simulate, usual_signals
-from laconic.tools.demo.node_rows import node_rows
-from laconic.tools.demo.rows import Rows, core_rows, difference
+from laconic.simulation import Trajectory, simulate, usual_signals
+from laconic.tools.demo.rows import Rows, core_rows, difference, node_rows
 from laconic.tools.demo.work import Point, Target, measure_all, target_of
 
 LEAST_STEPS = 10_000
@@ -92,10 +104,26 @@ def run_scene(given: Scene, out: Path, moved: Advance) -> SceneResult:
 
 def draw_scene(scene: Scene, result: SceneResult, out: Path) -> None:
     """Draws the scene's picture and adds the result about the ground."""
-    from laconic.tools.demo.pictures import draw
     picture = out / f"{scene.path.stem}.png"
     run = simulate(scene, usual_signals(scene))
     draw(run, result.points, result.floor, picture)
     result.picture = str(picture)
     if run.grip:
         result.no_slip, result.ground = run.grip.as_json(), run.grip.warning()
+
+
+def draw(run: Trajectory, points: Sequence[Point], floor: float, path: Path) -> None:
+    """Writes the picture."""
+    picture = figure(13.0, 7.6)
+    axes = picture.subplot_mosaic([["path", "velocities"], ["path", "error"]], width_ratios=(1.0, 1.35))
+    title(picture, f"{run.steps} steps of {run.scene.run.step_s:g} s by {run.method}", run)
+    plot_velocities(axes["velocities"], run)
+    mark_ground(axes, run)
+    plot_path(axes["path"], run)
+    curves: dict[str, list[tuple[float, float]]] = {}
+    for point in points:
+        curves.setdefault(point.method, [])
+        if point.error is not None and point.us_per_s is not None:
+            curves[point.method].append((point.us_per_s, point.error))
+    plot_error_against_time(axes["error"], curves, floor)
+    save(picture, path)

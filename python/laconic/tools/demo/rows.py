@@ -1,15 +1,19 @@
 """The result of every participant: one row of numbers after each exchange, in the same order for all.
 
 A row is ν(3), x, y, heading, wheel speeds (N), wheel angles (N), in the core's scalar type.
+
+A scene through the firmware node over CAN, in lockstep with raw frames.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from laconic.can.rig.buses import process_node
+from laconic.can.rig.lockstep import run_lockstep
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import advance_plant
@@ -73,3 +77,10 @@ def difference(found: Rows, expected: Rows, wheel_count: int) -> str:
     return (f"{found.who} differs from {expected.who} in {len(unequal)} of {have.size} numbers, first in "
             f"{row_names(wheel_count)[column]} after step {found.ticks[row]}: {float(have[row, column])!r}, not "
             f"{float(want[row, column])!r}")
+
+
+def node_rows(scene: Scene, steps: int, every: int = 1, moved: Callable[[int], None] = lambda _: None) -> Rows:
+    """Rows of the node that runs as a process of its own, over SLCAN on a TCP socket."""
+    with process_node(scene.run.real) as node:
+        run = run_lockstep(node, scene, steps, every=every, moved=moved)
+    return Rows("node", run.ticks, run.states, run.seconds)

@@ -1,4 +1,7 @@
-"""The C core's derivative against the derived equations, at random states and inputs; of trees also Maggi's (1.2)."""
+"""The C core's derivative against the derived equations, at random states and inputs; of trees also Maggi's (1.2).
+
+Checks of a derivation by numbers: the three forms against each other, and the C core against the derived rates.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +16,7 @@ from laconic.core.articulated_input import member_of, row_of_hinges
 from laconic.errors import Refused
 from laconic.tools.analyse.from_core import Subject, nu_rates
 from laconic.tools.derive.brackets import Bracketed
-from laconic.tools.derive.checks import random_values
-from laconic.tools.derive.equations import laconic_2_3, maggi
+from laconic.tools.derive.equations import System, laconic_2_3, laconic_2_4, maggi
 from laconic.tools.derive.scene_system import rate_function
 from laconic.tools.derive.tree_printing import with_numbers
 from laconic.tools.derive.tree_system import (
@@ -28,6 +30,25 @@ from laconic.tools.derive.tree_system import (
     TreeNumbers,
     pseudo_velocities,
 )
+
+
+def random_values(symbols: list[sp.Symbol], rng: np.random.Generator, count: int) -> np.ndarray:
+    """Rows of random numbers for symbols; positive ones get positive numbers away from zero."""
+    sizes = rng.uniform(0.5, 2.0, (count, len(symbols)))
+    signs = rng.choice([-1.0, 1.0], (count, len(symbols)))
+    return np.where([bool(s.is_positive) for s in symbols], sizes, sizes * signs)
+
+
+def forms_difference(system: System, *, count: int = 20, seed: int = 1) -> float:
+    """Largest difference between (2.3), (2.4) and (1.2) at random numbers, over the size of the equations' terms."""
+    forms = [laconic_2_3(system), laconic_2_4(system), maggi(system)]
+    symbols = sorted(set().union(*(e.free_symbols for form in forms for e in form)), key=str)
+    evaluate = sp.lambdify(symbols, forms, "math")
+    worst = 0.0
+    for row in random_values(symbols, np.random.default_rng(seed), count):
+        values = np.array(evaluate(*row), dtype=float)
+        worst = max(worst, float(np.abs(values - values[0]).max() / max(1.0, np.abs(values).max())))
+    return worst
 
 
 def core_difference(subject: Subject, system: Bracketed, *, count: int = 1000, seed: int = 2) -> float:

@@ -20,8 +20,7 @@ from laconic.tools.enclosure.motion import Motion
 from laconic.tools.enclosure.readings import Reading
 from laconic.tools.enclosure.state import Beginning, Sample
 from laconic.tools.enclosure.study import Enclosed, enclose, kinds_json
-from laconic.tools.verify.enclosed_result import EnclosedResult
-from laconic.tools.verify.trajectories import follow, held_of, start_case
+from laconic.tools.verify.trajectories import EnclosedResult, follow, held_of, start_case
 
 KEYS = {"M": "mass_kg", "I_S": "yaw_inertia_kgm2", "R": "wheel_radius_m", "J": "wheel_inertia_kgm2",
         "offset": "com_y_m", "c1": "motor_gain_Nm_per_V", "c2": "motor_damping_Nms"}

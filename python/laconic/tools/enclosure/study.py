@@ -1,4 +1,7 @@
-"""A scene's enclosure beside the core's run of it: how wide it is, and how far the core is from it, proved."""
+"""A scene's enclosure beside the core's run of it: how wide it is, and how far the core is from it, proved.
+
+A scene as a case of `laconic verify --enclose`.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +17,13 @@ import numpy as np
 from flint import arb
 
 from laconic.base.progress import progress_bar
-from laconic.simulation import Trajectory
+from laconic.scene import Scene
+from laconic.simulation import RunRefused, Trajectory, simulate
 from laconic.tools.enclosure.balls import precision
 from laconic.tools.enclosure.equation import Stretch
 from laconic.tools.enclosure.readings import Reading, check_enclosable, reading_of_core, reading_of_file
 from laconic.tools.enclosure.state import Sample
-from laconic.tools.verify.enclosed_result import bound_text
+from laconic.tools.verify.trajectories import EnclosedResult, bound_text
 
 # ---- What users see of an enclosure: a table and verdicts, columns for a CSV file, JSON.
 
@@ -222,3 +226,19 @@ def study_of(run: Trajectory, shown: bool = True) -> Study:
     readings = {"enclosure": reading_of_file(scene), "of the core's constants": reading_of_core(scene)}
     return Study(run, states, *(enclose(reading, reading.instants(ticks), found, title, shown)
                                 for title, reading in readings.items()))
+
+
+def verify_scene_enclosed(scene: Scene, shown: bool = True) -> EnclosedResult:
+    """Runs and encloses a scene at its rows; a step that the core refuses becomes the status."""
+    check_enclosable(scene)
+    try:
+        run = simulate(scene, state_signals(scene.wheel_count), progress=shown)
+    except RunRefused as refused:
+        return EnclosedResult(scene.name, f"{refused.status}: {refused}")
+    return scene_result(study_of(run, shown))
+
+
+def scene_result(study: Study) -> EnclosedResult:
+    """The result of a scene's study."""
+    return EnclosedResult(study.run.scene.name, "ok", seconds=study.run.seconds,
+                          own_constants=kinds_json(study.of_core), **kinds_json(study.of_file))

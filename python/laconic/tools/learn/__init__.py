@@ -11,8 +11,8 @@ except ModuleNotFoundError as error:
     from laconic.base.extras import missing_module
     raise missing_module(error) from None
 
-from laconic.tools.learn.one import DriveToPose as DriveToPose
-from laconic.tools.learn.vector import DriveToPoseVector as DriveToPoseVector
+from laconic.tools.learn.environments import DriveToPose as DriveToPose
+from laconic.tools.learn.environments import DriveToPoseVector as DriveToPoseVector
 
 ID, EPISODE_STEPS = "laconic/DriveToPose-v0", 300
 

@@ -4,7 +4,7 @@
     measure.of(course)                      # (lanes,): one number for each vehicle
 """
 
-from laconic.tools.measures.course import Course as Course
+from laconic.tools.measures.measure import Course as Course
 from laconic.tools.measures.measure import Measure as Measure
 from laconic.tools.measures.registry import measure_given as measure_given
 from laconic.tools.measures.registry import measure_named as measure_named

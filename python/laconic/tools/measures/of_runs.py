@@ -1,11 +1,14 @@
-"""Measures of a run. They take no sines and cosines, so that every machine of a cluster gives the same bits."""
+"""Measures of a run. They take no sines and cosines, so that every machine of a cluster gives the same bits.
+
+Measures of a run's end beside a place that is given, as an optimiser has it for its goal.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from laconic.tools.measures.course import Course
-from laconic.tools.measures.measure import Measure
+from laconic.tools.measures.arguments import ArguedMeasure
+from laconic.tools.measures.measure import OF_RUN, Course, Measure
 
 PLACE, WHEELS = ("x_m", "y_m"), ("voltage_V", "wheel_speed_rad_per_s")
 
@@ -131,3 +134,15 @@ MEASURES_OF_RUNS = (
                                        "wheel needs; below 0 it would slip",
             lambda course: course["no_slip_margin_N"].min(axis=0), signals=("no_slip_margin_N",),
             needs="friction coefficient"))
+
+
+def end_distance(course: Course, x_m: float = 0.0, y_m: float = 0.0) -> np.ndarray:
+    """How far from a place a run ends."""
+    dx, dy = course["x_m"][-1] - x_m, course["y_m"][-1] - y_m
+    return np.asarray(np.sqrt(dx * dx + dy * dy))
+
+
+MEASURES_OF_ENDS = (
+    ArguedMeasure("end_distance_m", "How far from the place (x_m, y_m), the origin if none is given, the run ends",
+                  end_distance, kind=OF_RUN, signals=("x_m", "y_m"), is_of_end=True,
+                  arguments={"x_m": None, "y_m": None}),)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from laconic.errors import BadInput, nearest_of
 from laconic.tools.measures.arguments import split, with_arguments
 from laconic.tools.measures.measure import OF_RUN, Measure
-from laconic.tools.measures.of_ends import MEASURES_OF_ENDS
 from laconic.tools.measures.of_model import MEASURES_OF_MODELS
-from laconic.tools.measures.of_runs import MEASURES_OF_RUNS
+from laconic.tools.measures.of_runs import MEASURES_OF_ENDS, MEASURES_OF_RUNS
 
 FILES = (MEASURES_OF_RUNS, MEASURES_OF_ENDS, MEASURES_OF_MODELS)
 

@@ -8,12 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.scene.key_overlap import check_apart
-from laconic.scene.key_path import key_path
+from laconic.scene.key_path import check_apart, key_path
 from laconic.scene.scene_tables import SceneTables
 from laconic.tools.measures.arguments import ArguedMeasure
-from laconic.tools.measures.measure import OF_RUN, Measure
-from laconic.tools.measures.needs import lacks
+from laconic.tools.measures.measure import OF_RUN, Measure, lacks
 from laconic.tools.measures.registry import measure_given
 from laconic.tools.measures.registry import measures_of as measures_of_kind
 from laconic.tools.optimise.candidates import Candidates

@@ -9,9 +9,8 @@ from typing import Any
 
 from laconic.base.paths import SOURCE_DIR
 from laconic.errors import BadInput
-from laconic.tools.report.binary_tools import run_tool
-from laconic.tools.report.counting_board import instructions_by_kind
-from laconic.tools.report.workshop import M4F
+from laconic.tools.report.counting import instructions_by_kind
+from laconic.tools.report.workshop import M4F, run_tool
 
 NODE = SOURCE_DIR / "firmware_stub"
 SOURCES = ("aes", "cmac", "secoc")

@@ -18,9 +18,8 @@ from laconic.errors import BadInput
 from laconic.scene import Scene, read_scene
 from laconic.scene.methods import EXPLICIT
 from laconic.tools.control.filter import Filter
-from laconic.tools.report.binary_tools import run_tool
-from laconic.tools.report.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
-from laconic.tools.report.workshop import BENCH, M4F, Target, Variant, Workshop
+from laconic.tools.report.counting import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
+from laconic.tools.report.workshop import BENCH, M4F, Target, Variant, Workshop, run_tool
 from laconic.tools.trim.c_tables import initializer
 
 CYCLES, STEP_S, COUNTS = 100, 0.01, 2000

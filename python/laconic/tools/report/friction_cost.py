@@ -19,8 +19,13 @@ import numpy as np
 from laconic.errors import ResultFails
 from laconic.scene import Scene, read_scene
 from laconic.scene.inputs import Input
-from laconic.tools.report.counting import cachegrind_present, size_of_step
-from laconic.tools.report.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
+from laconic.tools.report.counting import (
+    CALIBRATED_INSTRUCTIONS,
+    cachegrind_present,
+    lines_of_board,
+    size_of_step,
+    stopped_early,
+)
 from laconic.tools.report.workshop import HOST, Target, Variant, Workshop
 
 Row = dict[str, Any]

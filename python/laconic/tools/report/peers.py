@@ -19,8 +19,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from laconic.scene import Scene
-from laconic.tools.report.binary_tools import run_tool
-from laconic.tools.report.workshop import BENCH
+from laconic.tools.report.workshop import BENCH, run_tool
 from laconic.tools.verify.reference import Reference
 
 SOURCES = BENCH / "peers"

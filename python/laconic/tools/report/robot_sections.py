@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from laconic.scene import Scene
-from laconic.tools.report import pictures, texts
+from laconic.tools.report import pictures, sections
 from laconic.tools.report.estimated import table_of
 from laconic.tools.report.page import Row, Section, Table
-from laconic.tools.report.plan import plan
+from laconic.tools.report.pictures import plan
 from laconic.tools.report.sections import mapped, rounding_section
 
 Results = dict[str, list[Row]]
@@ -31,7 +31,8 @@ def _robot(scenes: Sequence[Scene], results: Results) -> Section:
     take = Table(results["take"], _fields(scenes, "wanted_error", "real", "method", "step_s", "error", "us_per_second"),
                  "What to take")
     title = "The robot" if len(scenes) == 1 else "The robots"
-    return Section("robot", title, texts.paragraphs(texts.ROBOT), [plan(scene) for scene in scenes], (facts, take))
+    return Section("robot", title, sections.paragraphs(sections.ROBOT),
+                   [plan(scene) for scene in scenes], (facts, take))
 
 
 def _facts(row: Row) -> list[Row]:
@@ -50,7 +51,7 @@ def _accuracy(scenes: Sequence[Scene], results: Results) -> Section:
     drawn = [pictures.error_against_time(rows, scene.path.stem, scene.name) for scene in scenes]
     fields = _fields(scenes, "real", "method", "step_s", "status", "error_nu", "estimate_nu", "error_pose",
                      "estimate_pose", "error_wheel", "estimate_wheel", "ns_per_step", "us_per_second")
-    return Section("accuracy", "Error against run time", texts.paragraphs(texts.ACCURACY), drawn,
+    return Section("accuracy", "Error against run time", sections.paragraphs(sections.ACCURACY), drawn,
                    (table_of(rows), Table(rows, fields, "All runs", True)))
 
 
@@ -63,11 +64,12 @@ def _stability(scenes: Sequence[Scene], results: Results) -> Section:
         star = (own["step_s"], own["fastest_decay_per_s"]) if "fastest_decay_per_s" in own else None
         drawn += [pictures.stability(rows, method, star, whose)
                   for method in mapped(rows)]
-    return Section("stability", "Stability map", texts.paragraphs(texts.ROBOT_STABILITY), drawn)
+    return Section("stability", "Stability map", sections.paragraphs(sections.ROBOT_STABILITY), drawn)
 
 
 def _board(scenes: Sequence[Scene], results: Results) -> Section:
     rows = [row for row in results["scenes"] if row["status"] == "ok"]
     fields = _fields(scenes, "chosen", "real", "build", "instructions", "step_code", "flash", "state", "worst_stack",
                      "same_bits")
-    return Section("board", "On a microcontroller", texts.paragraphs(texts.ROBOT_BOARD), (), (Table(rows, fields),))
+    return Section("board", "On a microcontroller", sections.paragraphs(sections.ROBOT_BOARD), (),
+                   (Table(rows, fields),))

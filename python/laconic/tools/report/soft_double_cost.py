@@ -11,8 +11,7 @@ from laconic.base.paths import SOURCE_DIR
 from laconic.errors import BadInput
 from laconic.scene import read_scene
 from laconic.scene.methods import EXPLICIT
-from laconic.tools.report.counting import count_on_board, host_state, size_of_step
-from laconic.tools.report.counting_board import instructions_by_kind
+from laconic.tools.report.counting import count_on_board, host_state, instructions_by_kind, size_of_step
 from laconic.tools.report.workshop import M4F, Variant, Workshop
 
 SOFT_DOUBLE = SOURCE_DIR / "core_c" / "optional" / "soft_double" / "soft_double.c"

@@ -1,24 +1,100 @@
-"""Compiles the bench for one scene: for the host and for Cortex-M boards, whole core or trimmed to the scene."""
+"""Compiles the bench for one scene: for the host and for Cortex-M boards, whole core or trimmed to the scene.
+
+Compilers and binary tools, called: what they print, or an error with their message.
+
+Sources of the core as a static library that is compiled as far as programs ask for it: a step by one method needs a
+fifth of the files. Which file defines what is read off the library of the build tree; what that does not tell is
+compiled, too.
+"""
 
 from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from laconic.base.paths import SOURCE_DIR, sources_missing
+from laconic.base.paths import SOURCE_DIR, build_dir, sources_missing
 from laconic.core import Core, load
 from laconic.errors import ResultFails
 from laconic.scene import Scene
 from laconic.scene.methods import ROWS
-from laconic.tools.report.binary_tools import run_tool
-from laconic.tools.report.core_archive import CoreArchive, undefined
 from laconic.tools.trim import Trimmed, trimmed
 from laconic.tools.trim.c_tables import initializer
+
+MADE = "core_c/liblaconic.a"  # of the build tree
+
+
+class CoreArchive:
+    """A folder with the library and its objects (and what the compiler writes beside these). `always`: files that
+    nothing asks for by name, since they stand in for what the compiler's own library has."""
+
+    def __init__(self, place: Path, sources: Iterable[Path], always: Iterable[Path], compile_command: Sequence[str],
+                 prefix: str) -> None:
+        """Of these sources, compiled by that command with binary tools of that prefix; nothing is compiled yet."""
+        shutil.rmtree(place, ignore_errors=True)
+        place.mkdir(parents=True)
+        self.place, self.path = place, place / "libcore.a"
+        self._left = {path.name: path for path in sources}
+        self._command, self._prefix = list(compile_command), prefix
+        self._compile(list(always))
+
+    def provide(self, wanted: Iterable[str]) -> set[str]:
+        """Compiles what defines these names and what that wants in turn; returns what the new objects want."""
+        home, todo, asked = home_of_names(), set(wanted), set[str]()
+        while new := {home[name] for name in todo if home.get(name) in self._left}:
+            todo = self._compile([self._left.pop(name) for name in sorted(new)])
+            asked |= todo
+        return asked
+
+    def provide_all(self) -> bool:
+        """Compiles what is left; whether there was anything."""
+        left = list(self._left.values())
+        self._left.clear()
+        self._compile(left)
+        return bool(left)
+
+    def _compile(self, sources: list[Path]) -> set[str]:
+        """Puts them into the library; returns what they want."""
+        objects = [path.with_suffix(".o").name for path in sources]
+        if sources:
+            run_tool([*self._command, "-c", *map(str, sources)], self.place)
+        run_tool([f"{self._prefix}ar", "rcs", self.path.name, *objects], self.place)
+        return undefined(self._prefix, [self.place / name for name in objects])
+
+
+@cache
+def home_of_names() -> dict[str, str]:
+    """The name of the C file that defines a name of the core; empty where there is no such library to read."""
+    made = build_dir() / MADE
+    if not made.is_file() or shutil.which("nm") is None:
+        return {}
+    found = {}
+    for line in run_tool(["nm", "-A", "-g", "--defined-only", str(made)]).splitlines():
+        member, name = line.rpartition(":")[0].rpartition(":")[2], line.rpartition(" ")[2]
+        found[name] = member.partition(".c.")[0] + ".c"
+    return found
+
+
+def undefined(prefix: str, objects: Sequence[Path]) -> set[str]:
+    """The names that objects want of others."""
+    if not objects:
+        return set()
+    return {line.split()[-1] for line in run_tool([f"{prefix}nm", "-u", *map(str, objects)]).splitlines()
+            if line.startswith(" ")}
+
+
+def run_tool(command: Sequence[str], where: Path | None = None) -> str:
+    """A compiler or binary tool; its messages when it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, cwd=where, check=False)
+    if done.returncode != 0:
+        first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[-300:])
+        raise ResultFails(f"{command[0]} failed: {first}")
+    return done.stdout
+
 
 BENCH = SOURCE_DIR / "core_c" / "bench"
 FLAGS = ("-std=c99", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-ffunction-sections", "-fdata-sections")

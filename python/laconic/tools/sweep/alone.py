@@ -13,7 +13,7 @@ from laconic.scene.ground import has_friction
 from laconic.scene.scene_tables import SceneTables, Value
 from laconic.simulation import RunRefused, Trajectory, simulate
 from laconic.tools.measures import Course, Measure
-from laconic.tools.measures.course import Winding
+from laconic.tools.measures.measure import Winding
 
 
 @dataclass(frozen=True)

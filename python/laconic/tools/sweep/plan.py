@@ -2,6 +2,8 @@
 
 Grids and lists make a product, the last `--vary` running fastest. Distributions are sampled together, N samples in
 all. With both, each point of the grid takes the same N samples, one after the other.
+
+Points of the unit cube that the distributions of a plan are sampled at.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,11 +20,48 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.scene.key_overlap import check_apart
+from laconic.scene.key_path import check_apart
 from laconic.scene.scene_tables import SceneTables, Value
 from laconic.tools.measures import Measure, measure_given
-from laconic.tools.sweep.points import SAMPLINGS, saltelli_count, unit_points
 from laconic.tools.sweep.varied import Varied, read_varied
+
+SAMPLINGS = {"sobol": "quasi-random, scrambled Sobol'", "latin": "Latin hypercube", "random": "pseudo-random",
+             "saltelli": "Saltelli's design for Sobol' indices"}
+
+
+def saltelli_count(samples: int, keys: int) -> int:
+    """Runs of Saltelli's design without second-order indices."""
+    return samples * (keys + 2)
+
+
+def unit_points(sampling: str, samples: int, keys: int, seed: int) -> np.ndarray:
+    """(points, keys) of [0, 1): the same for the same arguments."""
+    if keys == 0:
+        return np.zeros((1, 0))
+    if sampling == "random":
+        return np.random.default_rng(seed).random((samples, keys))
+    if sampling == "saltelli":
+        return _saltelli(samples, keys, seed)
+    from scipy.stats import qmc
+    if sampling == "latin":
+        return np.asarray(qmc.LatinHypercube(keys, seed=seed).random(samples))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that a count is no power of 2 costs some of the evenness, nothing else
+        return np.asarray(qmc.Sobol(keys, seed=seed).random(samples))
+
+
+def problem_of(keys: list[str]) -> dict[str, object]:
+    """SALib's description of keys with values of [0, 1)."""
+    return {"num_vars": len(keys), "names": keys, "bounds": [[0.0, 1.0]] * len(keys)}
+
+
+def _saltelli(samples: int, keys: int, seed: int) -> np.ndarray:
+    from SALib.sample import sobol
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return np.asarray(sobol.sample(problem_of([str(key) for key in range(keys)]), samples,
+                                       calc_second_order=False, scramble=True, seed=seed))
+
 
 FORMAT = 1
 MOST_RUNS = 10**9

@@ -12,7 +12,7 @@ import numpy as np
 from laconic.base.progress import progress_bar
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
-from laconic.tools.measures.needs import lacks
+from laconic.tools.measures.measure import lacks
 from laconic.tools.sweep.chunk import Rows, nominal_course
 from laconic.tools.sweep.effort import foretell, foretell_by, steps_at, steps_of_runs, tried_seconds
 from laconic.tools.sweep.lanes import Template

@@ -1,4 +1,7 @@
-"""The race: the core's batch, the core alone and other programs in turn, in one process on one core."""
+"""The race: the core's batch, the core alone and other programs in turn, in one process on one core.
+
+Energy that the processor took, where the system lets it be read: Linux's powercap counters (RAPL).
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,50 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from laconic.base.progress import progress_bar
 from laconic.scene import read_scene
-from laconic.tools.report.many.energy import EnergyCounter
 from laconic.tools.report.many.jax_lanes import jax_run
 from laconic.tools.report.many.mujoco_base import mujoco_run
 from laconic.tools.report.many.numba_loop import numba_runs
 from laconic.tools.report.many.task import AGREEMENT, Task, core_batch, core_states, difference, equations_of
+
+COUNTERS = Path("/sys/class/powercap")
+UNREADABLE = ("energy: no counter of /sys/class/powercap can be read here; on Linux with RAPL, as root or with read "
+              "permission on energy_uj, the table has a column of it")
+
+
+class EnergyCounter:
+    """The packages' counters together; `joules` between two readings, across one wrap of each."""
+
+    def __init__(self, folder: Path = COUNTERS):
+        self._counters = [path for path in sorted(folder.glob("*:*")) if path.name.count(":") == 1 and _read(path)]
+
+    @property
+    def is_readable(self) -> bool:
+        """Whether there is one."""
+        return bool(self._counters)
+
+    def reading(self) -> list[tuple[int, int]]:
+        """(µJ, range) of each."""
+        return [found for path in self._counters if (found := _read(path))]
+
+    @staticmethod
+    def joules(before: list[tuple[int, int]], after: list[tuple[int, int]]) -> float:
+        """Between two readings."""
+        return sum((b - a) % size for (a, _), (b, size) in zip(before, after, strict=True)) * 1e-6
+
+
+def _read(path: Path) -> tuple[int, int] | None:
+    try:
+        return int((path / "energy_uj").read_text()), int((path / "max_energy_range_uj").read_text()) + 1
+    except (OSError, ValueError):
+        return None
+
 
 SCENE, STEP_S, STEPS = "robotino2", 1e-3, 100
 CHECK_STEP_S = 1e-4  # at which the textbook's pose and the core's formula of it differ by less than AGREEMENT

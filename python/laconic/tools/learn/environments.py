@@ -1,19 +1,103 @@
-"""Many robots that drive to poses of their own, as a gymnasium.vector.VectorEnv on one batch."""
+"""One robot that drives to a pose, as a gymnasium.Env.
+
+The spaces of one robot, and seeds for many.
+
+Many robots that drive to poses of their own, as a gymnasium.vector.VectorEnv on one batch.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+import gymnasium
 import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from laconic.core.copies import OwnMemory
-from laconic.core.given import by_names, shown, step_count
+from laconic.core.given import by_names, shown, step_count, whole_number
 from laconic.errors import BadInput
 from laconic.tools.learn.fleet import Fleet
-from laconic.tools.learn.spaces import action_space, check_open, generators_of, observation_space
+from laconic.tools.learn.task import OBSERVATION, checked_actions
+
+
+def action_space(wheel_count: int) -> Box:
+    """A share of the largest voltage for each wheel."""
+    return Box(-1.0, 1.0, (wheel_count,), np.float32)
+
+
+def observation_space() -> Box:
+    """Of laconic.tools.learn.task.OBSERVATION: sine and cosine are bounded, the rest by physics alone."""
+    high = np.array([1.0 if name.startswith(("cos_", "sin_")) else np.inf for name in OBSERVATION], np.float32)
+    return Box(-high, high, dtype=np.float32)
+
+
+def generators_of(seed: int | Sequence[int | None] | None, lanes: int) -> list[np.random.Generator]:
+    """One for each lane; of one seed lane k has seed + k, as in Gymnasium's own vector environments."""
+    if seed is None or isinstance(seed, int | np.integer):
+        first = None if seed is None else checked_seed("seed", seed)
+        seeds: list[int | None] = [None if first is None else first + lane for lane in range(lanes)]
+    elif isinstance(seed, str) or not isinstance(seed, Sequence | np.ndarray):
+        raise BadInput(f"seed: {shown(seed)} is no seed; give a whole number, a list of one for each environment, or "
+                       "None")
+    else:
+        seeds = [None if each is None else checked_seed(f"seed[{lane}]", each) for lane, each in enumerate(seed, 1)]
+    if len(seeds) != lanes:
+        raise BadInput(f"seed: {len(seeds)} seeds for {lanes} environments; give one for each, or one number")
+    return [seeding.np_random(each)[0] for each in seeds]
+
+
+def check_open(what: str, is_closed: bool) -> None:
+    """BadInput where close() was called."""
+    if is_closed:
+        raise BadInput(f"{what}: this environment is closed; make another one")
+
+
+def checked_seed(name: str, given: Any) -> int:
+    """A seed that Gymnasium takes."""
+    seed = whole_number(name, given)
+    if seed < 0:
+        raise BadInput(f"{name}: {seed} is below 0; give a whole number from 0 on")
+    return seed
+
+
+class DriveToPose(OwnMemory, gymnasium.Env[np.ndarray, np.ndarray]):
+    """A fleet of one; settings are those of Fleet. An episode's length is bounded by gymnasium.make()."""
+
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012
+
+    def __init__(self, **settings: Any):
+        self.fleet = Fleet(1, **settings)
+        self.action_space, self.observation_space = action_space(self.fleet.wheel_count), observation_space()
+        self._has_begun = self._is_closed = False
+
+    def reset(self, *, seed: int | None = None,
+              options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        """At rest at the origin, with a new target."""
+        check_open("reset", self._is_closed)
+        if seed is not None:
+            super().reset(seed=checked_seed("seed", seed))
+        self.fleet.reset([0], [self.np_random])
+        self._has_begun = True
+        return self.fleet.observe()[0], {}
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Holds the action; terminated: the target is reached (info["reached"]) or the area left; truncated: the core
+        refused a step."""
+        check_open("step", self._is_closed)
+        if not self._has_begun:
+            raise BadInput("step: nothing was reset yet; call reset() first")
+        rewards, reached, left, refused = self.fleet.act(checked_actions(action, (self.fleet.wheel_count,))[None])
+        ends = bool(reached[0] or left[0])
+        info = {"reached": bool(reached[0])} if ends else {}
+        return self.fleet.observe()[0], float(rewards[0]), ends, bool(refused[0]), info
+
+    def close(self) -> None:
+        """No step and no reset after it."""
+        self._is_closed = True
 
 
 class DriveToPoseVector(OwnMemory, VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
