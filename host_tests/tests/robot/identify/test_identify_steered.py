@@ -12,6 +12,7 @@ import pytest
 
 from laconic.base.paths import scene_path
 from laconic.cli.main import run
+from laconic.robot.identify import steered_evidence
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.steered_evidence import made_up
 from laconic.robot.identify.study import identify
@@ -196,6 +197,17 @@ def test_steering_of_a_limited_rate_begins_where_the_wheels_are_whether_it_lags_
     at_once, soon = (driven(log, replace(own, lag_s=lag_s), 4, first_rad).steering_rad[:, 0] for lag_s in (0.0, 1e-9))
     assert at_once[0] == first_rad
     assert at_once == pytest.approx(soon, abs=1e-6)
+
+
+def test_the_search_for_lags_begins_inside_their_bound(monkeypatch):
+    begun, solve = [], steered_evidence.least_squares
+    monkeypatch.setattr(steered_evidence, "least_squares",
+                        lambda residual, start, **more: begun.append(start) or solve(residual, start, **more))
+    scene, free = read_scene(CAR), ("steering-lag", "speed-lag", "clock-lag")
+    parameters = geometry_of(scene, free)
+    identify(scene, [made(CAR, free, {}, lines=60)], parameters)
+    lags = dict(zip((p.group for p in parameters.each), begun[0], strict=True))
+    assert lags["steering-lag"] > 0.0 and lags["speed-lag"] > 0.0 and lags["clock-lag"] == 0.0
 
 
 def test_95_percent_intervals_hold_the_truth_of_four_made_up_steered_robots():
