@@ -12,6 +12,7 @@ import pytest
 
 from laconic.base.paths import scene_path
 from laconic.cli.main import run
+from laconic.robot.identify import steered_evidence
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.steered_evidence import made_up
 from laconic.robot.identify.study import identify
@@ -21,7 +22,7 @@ from laconic.robot.logs.log import Following
 from laconic.robot.replay.missed_wraps import fitting
 from laconic.robot.replay.rolling import path_of, rotations_of
 from laconic.robot.replay.steered_rolling import SteeredRolling
-from laconic.robot.replay.steered_signals import followed
+from laconic.robot.replay.steered_signals import OfLog, driven, followed
 from laconic.robot.replay.steered_slip import SteeredSlip
 from laconic.scene import read_scene
 
@@ -187,6 +188,26 @@ def test_what_follows_a_held_command_does_so_as_small_steps_say():
                 mean += value / parts
             assert values[index + 1] == pytest.approx(value, abs=2e-4)
             assert means[index] == pytest.approx(mean, abs=2e-4)
+
+
+def test_steering_of_a_limited_rate_begins_where_the_wheels_are_whether_it_lags_a_little_or_not():
+    log, first_rad = made(CAR, (), {}), -0.3
+    assert log.steering_angle_rad is not None and log.steering_angle_rad[0, 0] > 0.0
+    own = OfLog(rate_limit_rad_per_s=1.5)
+    at_once, soon = (driven(log, replace(own, lag_s=lag_s), 4, first_rad).steering_rad[:, 0] for lag_s in (0.0, 1e-9))
+    assert at_once[0] == first_rad
+    assert at_once == pytest.approx(soon, abs=1e-6)
+
+
+def test_the_search_for_lags_begins_inside_their_bound(monkeypatch):
+    begun, solve = [], steered_evidence.least_squares
+    monkeypatch.setattr(steered_evidence, "least_squares",
+                        lambda residual, start, **more: begun.append(start) or solve(residual, start, **more))
+    scene, free = read_scene(CAR), ("steering-lag", "speed-lag", "clock-lag")
+    parameters = geometry_of(scene, free)
+    identify(scene, [made(CAR, free, {}, lines=60)], parameters)
+    lags = dict(zip((p.group for p in parameters.each), begun[0], strict=True))
+    assert lags["steering-lag"] > 0.0 and lags["speed-lag"] > 0.0 and lags["clock-lag"] == 0.0
 
 
 def test_95_percent_intervals_hold_the_truth_of_four_made_up_steered_robots():

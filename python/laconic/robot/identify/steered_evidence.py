@@ -33,6 +33,7 @@ SMALL = 2e-3          # of z: the core's contact forces are exact to far less
 USUAL = 1.4826        # standard deviation over the median of sizes
 LEAST_SIZE = 1e-6
 SAMPLES, PERIOD_S = 400, 0.05
+LAGS, INSIDE = ("steering-lag", "speed-lag"), 0.5   # a lag of 0 is a bound, and that is no place to begin
 
 
 class SteeredEvidence(RollingEvidence):
@@ -77,7 +78,7 @@ class SteeredEvidence(RollingEvidence):
         def residual(z: np.ndarray) -> np.ndarray:
             return np.concatenate([*(each.ravel() for each in self.errors(vehicle(z))), WEAK_PRIOR * z])
 
-        start = np.zeros(len(parameters))
+        start = np.array([INSIDE if p.group in LAGS else 0.0 for p in parameters.each])
         if len(parameters):
             start = least_squares(residual, start, loss="soft_l1", f_scale=ROBUST, ftol=1e-3, xtol=1e-3, max_nfev=30,
                                   diff_step=1e-3 if self.difference else None, x_scale=1.0).x

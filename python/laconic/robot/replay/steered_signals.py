@@ -82,7 +82,8 @@ def driven(log: Log, own: OfLog, wheels: int, first_rad: float | None = None) ->
         np.interp(grid - shift_s, log.time_s, column) for column in given.T]) if given.shape[1] else given[row]
     angles, between = held, 0.5 * (held[1:] + held[:-1])
     if given.shape[1] and (following.is_command or lag_s > 0.0 or limit < math.inf):
-        pairs = [followed(grid, column, column[0] if first_rad is None or lag_s == 0.0 else first_rad, lag_s, limit)
+        start_rad = None if lag_s == 0.0 and limit == math.inf else first_rad
+        pairs = [followed(grid, column, column[0] if start_rad is None else start_rad, lag_s, limit)
                  for column in held.T]
         angles, between = (np.column_stack(each) for each in zip(*pairs, strict=True))
     steps = np.diff(grid)
