@@ -79,7 +79,8 @@ static const char help[] =
     "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
     "  --with-parent    end when standard input ends: a pipe of a program that starts the node and may be killed\n"
-    "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
+    "  --shared         serve up to four clients, which hear each other's frames; frames from and to the node itself\n"
+    "                   pass only among clients that have sent it one (XCP: among all), and to all until a client has\n"
     "  --socketcan IF   serve a CAN interface of Linux instead, such as can0, which must be up: no port is opened\n"
     "  --key FILE       take commands only with codes by the key in FILE, 32 hexadecimal digits (docs/rig-ports.md)\n"
     "  -h, --help       this text\n"
@@ -88,6 +89,7 @@ static const char help[] =
 
 /* BELL is SLCAN's error. The rest is no frame, so a program skips it, but a person can read it. */
 static const char occupied[] = "\aoccupied: this line has one client at a time, and another one is on it\r";
+static const char occupied_shared[] = "\aoccupied: this port has four clients at most, and four are on it\r";
 
 static int complain(const char *what, const char *remedy) {
     fprintf(stderr, "laconic-node: %s: %s\n", what, remedy);
@@ -244,15 +246,18 @@ static void wait_for_work(const board *port, int listening, int parent, const si
     if (parent >= 0 && ready > 0 && FD_ISSET(parent, &readable)) look_at_parent(parent);
 }
 
-static void send_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT); }
+static void send_occupied(const board *port) {
+    const char *why = port->stations == 1 ? occupied : occupied_shared;
+    (void)send(port->refused, why, strlen(why), MSG_DONTWAIT);
+}
 
-/* Accepts a second client only to send it the reason; without an answer its user would search for another fault. */
+/* Accepts a client too many only to send it the reason; without an answer its user would search for another fault. */
 static void refuse_second(board *port, int listening) {
     const int second = station_connection(listening);
     if (second < 0) return;
     if (port->refused >= 0) close(port->refused);
     port->refused = second;
-    send_occupied(second);
+    send_occupied(port);
 }
 
 /* Sends the reason again when the refused client sends something, since programs often flush a serial line after
@@ -262,7 +267,7 @@ static void answer_refused(board *port) {
     char rest[256];
     const ssize_t count = port->refused < 0 ? -1 : recv(port->refused, rest, sizeof rest, MSG_DONTWAIT);
     if (count > 0) {
-        send_occupied(port->refused);
+        send_occupied(port);
         shutdown(port->refused, SHUT_WR);
     } else if (port->refused >= 0 && (count == 0 || (errno != EAGAIN && errno != EINTR))) {
         close(port->refused);
