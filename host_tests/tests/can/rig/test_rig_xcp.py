@@ -11,6 +11,7 @@ import zlib
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -155,6 +156,33 @@ def test_the_command_writes_the_file_and_drives_nothing(tmp_path: Path, capsys: 
     assert "CAN_ID_MASTER 0x6BF" in path.read_text() and "CAN_ID_SLAVE 0x6BE" in path.read_text()
     assert run(["rig", "s1", "--a2l", str(path), "--free-run"]) == 2
     assert "--free-run: has no meaning beside --a2l" in capsys.readouterr().err
+
+
+def test_numbers_that_name_a_choice_have_texts_and_limits() -> None:
+    text = a2l_text(SCENE)
+    for name, table, low, high in (("wheel_kind_1", "WHEEL_KIND", 1, 2), ("wheel_locked_2", "YES_NO", 0, 1),
+                                   ("wheel_driven_3", "YES_NO", 0, 1), ("motor_circuit_1", "MOTOR_CIRCUIT", 0, 2)):
+        entry = re.findall(rf"CHARACTERISTIC {name} .*\n +VALUE 0x\w+ of_ULONG 0 (\w+) (\d+) (\d+)", text)
+        assert entry == [(f"text_{table}", str(low), str(high))]
+    state = re.findall(r"MEASUREMENT state .*\n +ULONG (\w+) 0 0 0 (\d+)", text)
+    assert state == [("text_state", str(max(wire()["HEARTBEAT"].fields["state"].choices)))]
+    assert 'texts_MOTOR_CIRCUIT "" TAB_VERB 3 0 "controller" 1 "open" 2 "shorted"' in text
+    used, made = (set(re.findall(rf"{what} texts_(\w+)", text)) for what in ("COMPU_TAB_REF", "begin COMPU_VTAB"))
+    assert used == made and set(re.findall(r" text_(\w+) ", text)) == used
+
+
+@pytest.mark.parametrize("name", ["s1", "kuka_youbot", "tricycle_agv"])
+def test_descriptions_tell_what_a_number_is_and_not_how_frames_hold_it(name: str) -> None:
+    told = {each.name: each.text for each in (*parameters(read_scene(name)), *outputs(read_scene(name)))}
+    assert told["wheel_driven_1"].startswith("Whether the wheel has a motor")  # 1 is driven
+    assert told["wheel_speed_2"] == "Speed of wheel 2"
+    assert not [text for text in told.values() if "group" in text or "has no motor" in text]
+
+
+def test_estimates_are_in_the_file_only_where_the_scene_asks_the_node_for_them() -> None:
+    assert not [each for each in addresses(SCENE) if each.startswith("error_")]
+    asking = replace(SCENE, rig=replace(SCENE.rig, frames=("NU", "ERROR_ESTIMATE")))
+    assert len([each for each in addresses(asking) if each.startswith("error_")]) == 8
 
 
 def test_pya2l_reads_the_file() -> None:
