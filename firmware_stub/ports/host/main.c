@@ -76,7 +76,7 @@ static const char help[] =
     "\n"
     "  --port N         TCP port, 0 to 65535; 0 (default): any free one\n"
     "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
-    "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
+    "  --bitrate N      refuse clients that set another rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
     "  --with-parent    end when standard input ends: a pipe of a program that starts the node and may be killed\n"
     "  --shared         serve up to four clients, which hear each other's frames; frames from and to the node itself\n"

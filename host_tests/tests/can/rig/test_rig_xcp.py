@@ -24,6 +24,7 @@ from laconic.can.rig.a2l import EACH, OUTPUTS, PARAMETERS, SEGMENT, a2l_text, ou
 from laconic.can.rig.boards import own_node, why_no_emulation
 from laconic.can.rig.buses import NodeOnBus, connected, node_in_process, node_process
 from laconic.can.rig.client import NodeClient
+from laconic.can.rig.free_judge import judge_free_run
 from laconic.can.rig.lockstep import load_scene
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
@@ -317,6 +318,20 @@ def test_a_run_of_the_rig_goes_on_while_a_master_is_refused() -> None:
         result = {"status": 2, "field": 2, "item": 0, "state": 2, "command": 21, "request": 0}
         node.check(result)  # as the rig's loops do with every RESULT
         assert master.read(addresses(scene)["steps"], "<I") == 10
+
+
+@pytest.mark.parametrize(("mass_kg", "is_told"), [(14.0, True), (0.0, False)])
+def test_the_rig_tells_that_numbers_were_changed_by_xcp_if_the_node_took_them(mass_kg: float, is_told: bool) -> None:
+    commands = [b"\xff\0", b"\xf6\0\0\0" + struct.pack("<I", addresses(SCENE)["mass_kg"]),
+                b"\xf0\x04" + struct.pack("<f", mass_kg)]
+    with own_node("virtual", "double") as node:
+
+        def moved(_: float) -> None:  # one command in each cycle: a master waits for each answer
+            if commands:
+                node.link.send_message(can.Message(arbitration_id=COMMAND, data=commands.pop(0), is_extended_id=False))
+
+        judgement = judge_free_run(node, SCENE, 0.5, 1000, 100, {}, moved=moved)
+    assert len([note for note in judgement.notes if "changed by XCP" in note]) == is_told
 
 
 # ---- pyxcp

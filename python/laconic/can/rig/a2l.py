@@ -27,8 +27,8 @@ LARGEST = 3.4e38  # of single precision
 LIMITS = {"POSITIVE": (0.0, LARGEST), "NOT_NEGATIVE": (0.0, LARGEST), "SHARE": (0.0, 1.0), "INCLINE": (0.0, 1.5)}
 INTEGERS = {"WHEEL_KIND": (1.0, 2.0), "FLAG": (0.0, 1.0), "ABSENCE": (0.0, 1.0), "INTEGER": (0.0, 2147483647.0)}
 OF_STEPS = (("steps", "steps since the start", ""), ("state", "state of the node, as in HEARTBEAT", "state"))
-PRESENT = {"wheel_undriven": "Whether the wheel has a motor; without one, its gain and damping are 0"}  # shown as driven
-WORDS_OF = {"WHEEL_KIND": {1: "roller", 2: "fixed"}, "YES_NO": {0: "no", 1: "yes"},  # texts that tools show for a number
+PRESENT = {"wheel_undriven": "Whether the wheel has a motor; without one, its gain and damping are 0"}  # is driven
+WORDS_OF = {"WHEEL_KIND": {1: "roller", 2: "fixed"}, "YES_NO": {0: "no", 1: "yes"},  # texts that tools show
             "MOTOR_CIRCUIT": {0: "controller", 1: "open", 2: "shorted"}}
 
 # Signal of SELECT → frame and signals that have the same numbers; a stem that ends in _ is of each wheel or hinge.
