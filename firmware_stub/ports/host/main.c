@@ -69,11 +69,9 @@ static void hear_the_end(sigset_t *heard) {
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
-    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n"
-    "\n"
+    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
-    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
-    "\n"
+    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n\n"
     "  --port N         TCP port, 0 to 65535; 0 (default): any free one\n"
     "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
     "  --bitrate N      refuse clients that set another rate, as a real bus would (default: any rate)\n"

@@ -443,12 +443,24 @@ def test_the_programs_of_docs_rig_ports_md_calibrate_and_measure(start: str, nee
         node.start_free_run(watchdog_ms=0)
         exec(program_of_page(start).replace(":4000", f":{port}"), {})
         out = capsys.readouterr().out
+        assert needs != "pyxcp" or hex(zlib.crc32(struct.pack("<f", 12.5))) in out
         assert "laconic_2" in out and len(re.findall(sample, out, re.M)) >= 5
         master = Master(node)
         master.wait(deque(), 0.2)  # what the program has heard on the same bus
         master.answers.clear()
         master.ask(0xFF, 0)
         assert master.read(addresses(SCENE)["mass_kg"]) == 12.5
+
+
+def test_the_python_can_program_of_docs_rig_ports_md_ends_where_only_heartbeats_come(tmp_path: Path) -> None:
+    key = tmp_path / "robot.key"
+    key.write_text("00112233445566778899aabbccddeeff")  # with it a node has no slave
+    program = program_of_page("import struct\nimport time\n\nimport can").replace(" + 2.0  ", " + 0.5  ")
+    with node_process("double", ID_BASE, "--key", str(key)) as port:
+        begun = time.monotonic()
+        with pytest.raises(SystemExit, match="no answer"):
+            exec(program.replace(":4000", f":{port}"), {})
+        assert time.monotonic() - begun < 5.0
 
 
 def test_pya2l_reads_the_file_as_the_page_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
