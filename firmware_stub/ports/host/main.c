@@ -69,14 +69,12 @@ static void hear_the_end(sigset_t *heard) {
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
-    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n"
-    "\n"
+    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
-    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
-    "\n"
+    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n\n"
     "  --port N         TCP port, 0 to 65535; 0 (default): any free one\n"
     "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
-    "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
+    "  --bitrate N      refuse clients that set another rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
     "  --with-parent    end when standard input ends: a pipe of a program that starts the node and may be killed\n"
     "  --shared         serve up to four clients, which hear each other's frames; frames from and to the node itself\n"
