@@ -19,6 +19,7 @@ OTHERS = ["LACONIC_SINGLE", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=2", "L
 NODE_OTHERS = ["LACONIC_NODE_CAN_FD=0", "LACONIC_NODE_WITH_DRIVES=0", "LACONIC_NODE_WITH_SENSORS=0",
                "LACONIC_NODE_WITH_XCP=0", "LACONIC_NODE_WITH_SLIP=0", "LACONIC_NODE_AXIS_BYTES=512",
                "LACONIC_MAX_WHEELS=4", "LACONIC_SINGLE"]
+NAMED = {"LACONIC_NODE_WITH_SLIP": "HINGES_1_of_bodies"}  # what the linker misses, where it is not the name
 CALLS = {
     "plant": "static laconic_plant p; laconic_start s = {0}; laconic_vehicle v = {0};"
              "return (int)laconic_plant_start(&p, &v, &laconic_rk4, (laconic_real)0.01, &s, NULL);",
@@ -228,7 +229,8 @@ def test_a_port_and_a_node_that_differ_do_not_link(definition, tmp_path):
     if definition is None:
         assert done.returncode == 0, done.stderr
     else:
-        assert any(definition.partition("=")[0] in each for each in missing_of_node(done))
+        name = definition.partition("=")[0]
+        assert any(NAMED.get(name, name) in each for each in missing_of_node(done))
 
 
 def missing_of_node(done: subprocess.CompletedProcess[str]) -> set[str]:
