@@ -52,6 +52,21 @@ def test_a_step_that_is_no_whole_rate_is_refused_with_the_remedy() -> None:
         played(read_scene("robotino2").with_run(step_s=0.0007), 0.1, lambda t: [], drives="robomaster")
 
 
+def test_late_periods_of_an_earlier_run_are_not_those_of_this_one() -> None:
+    scene = read_scene("robotino2")
+    with node_in_process("double") as (client, end):
+        told = []
+        for stall_us in (30_000, 0):
+            vehicle = InProcess(client, end, scene, drive_settings(scene, "robomaster"))
+            vehicle.start()
+            client.link.clock.time_us += stall_us
+            for _ in range(40):
+                client.link.pump()
+            vehicle.finish()
+            told.append(vehicle.lateness.late_periods)
+        assert told[0] > 10 and told[1] == 0
+
+
 def test_heartbeat_tells_that_a_drive_has_heard_no_controller() -> None:
     """The only word of a drive's watchdog that a node in another process gives."""
     scene = read_scene("robotino2")
