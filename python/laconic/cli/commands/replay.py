@@ -24,7 +24,8 @@ OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 @click.argument("scene", type=SceneName(hinges=True))
 @click.option("--inputs", type=click.Choice(INPUTS),
               help="The columns of the log that drive the model. Default: voltages if its columns are signals, in one "
-              "file or many; currents if the log has them and the ground no friction; else the wheels' speeds.")
+              "file or many, without casters and trailers; currents if the log has them and the ground no "
+              "friction; else the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. Default: every other run of a folder.")
 @map_option

@@ -252,7 +252,8 @@ def leftovers(runs: Sequence[tuple[Log, np.ndarray]]) -> tuple[dict[str, float],
     """(true over rolled motion in each direction that the runs tell, standard errors of that, spread of the stretches'
     errors for a metre) of runs with their rolled paths."""
     told, true, errors = [], [], []
-    names = DIRECTIONS if _roll_sideways([path for _, path in runs]) else tuple(name for name in DIRECTIONS if name != SIDEWAYS)
+    is_sideways = _roll_sideways([path for _, path in runs])
+    names = [name for name in DIRECTIONS if is_sideways or name != SIDEWAYS]
     for log, path in runs:
         run = run_of(log, by_wheels=False)
         off = stretch_errors(run, path)
