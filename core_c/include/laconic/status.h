@@ -99,8 +99,8 @@
       "the twist gives this steered wheel no direction (its size there is #); keep the turning centre away from the " \
       "hinge, and scale the voltages, not the twist, to stop") \
     X(TWIST_JUMPS, "twist jumps", \
-      "the twist turns this steered wheel by # rad within a step, at most @ rad are possible; change the twist " \
-      "slowly, and reverse by voltages") \
+      "the twist turns this steered wheel by # rad within a step, at most @ rad are possible; change the " \
+      "twist slowly, give its slope (steering_twist_rate) in an FMU or in C, and reverse by voltages") \
     X(TWIST_AGAINST_WHEELS, "twist against wheels", \
       "the twist makes fixed wheels of the carriage slide (by # of its size); give one whose turning centre is on " \
       "their axle line") \

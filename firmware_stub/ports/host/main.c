@@ -69,17 +69,16 @@ static void hear_the_end(sigset_t *heard) {
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
-    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n"
-    "\n"
+    "       [--with-parent] [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
-    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
-    "\n"
+    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n\n"
     "  --port N         TCP port, 0 to 65535; 0 (default): any free one\n"
     "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
-    "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
+    "  --bitrate N      refuse clients that set another rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
     "  --with-parent    end when standard input ends: a pipe of a program that starts the node and may be killed\n"
-    "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
+    "  --shared         serve up to four clients, which hear each other's frames; frames from and to the node itself\n"
+    "                   pass only among clients that have sent it one (XCP: among all), and to all until a client has\n"
     "  --socketcan IF   serve a CAN interface of Linux instead, such as can0, which must be up: no port is opened\n"
     "  --key FILE       take commands only with codes by the key in FILE, 32 hexadecimal digits (docs/rig-ports.md)\n"
     "  -h, --help       this text\n"
@@ -88,6 +87,7 @@ static const char help[] =
 
 /* BELL is SLCAN's error. The rest is no frame, so a program skips it, but a person can read it. */
 static const char occupied[] = "\aoccupied: this line has one client at a time, and another one is on it\r";
+static const char occupied_shared[] = "\aoccupied: this port has four clients at most, and four are on it\r";
 
 static int complain(const char *what, const char *remedy) {
     fprintf(stderr, "laconic-node: %s: %s\n", what, remedy);
@@ -244,15 +244,18 @@ static void wait_for_work(const board *port, int listening, int parent, const si
     if (parent >= 0 && ready > 0 && FD_ISSET(parent, &readable)) look_at_parent(parent);
 }
 
-static void send_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT); }
+static void send_occupied(const board *port) {
+    const char *why = port->stations == 1 ? occupied : occupied_shared;
+    (void)send(port->refused, why, strlen(why), MSG_DONTWAIT);
+}
 
-/* Accepts a second client only to send it the reason; without an answer its user would search for another fault. */
+/* Accepts a client too many only to send it the reason; without an answer its user would search for another fault. */
 static void refuse_second(board *port, int listening) {
     const int second = station_connection(listening);
     if (second < 0) return;
     if (port->refused >= 0) close(port->refused);
     port->refused = second;
-    send_occupied(second);
+    send_occupied(port);
 }
 
 /* Sends the reason again when the refused client sends something, since programs often flush a serial line after
@@ -262,7 +265,7 @@ static void answer_refused(board *port) {
     char rest[256];
     const ssize_t count = port->refused < 0 ? -1 : recv(port->refused, rest, sizeof rest, MSG_DONTWAIT);
     if (count > 0) {
-        send_occupied(port->refused);
+        send_occupied(port);
         shutdown(port->refused, SHUT_WR);
     } else if (port->refused >= 0 && (count == 0 || (errno != EAGAIN && errno != EINTR))) {
         close(port->refused);

@@ -417,6 +417,64 @@ def test_a_car_says_what_drives_it(capsys: pytest.CaptureFixture[str]) -> None:
         capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("scene", "words", "example"), [
+    ("f1tenth", [],
+     "/ackermann_cmd ackermann_msgs/msg/AckermannDriveStamped '{drive: {speed: 0.5, steering_angle: 0.1}}'"),
+    ("robotino2", [], "/cmd_vel geometry_msgs/msg/Twist '{linear: {x: 0.1}, angular: {z: 0.5}}'"),
+    ("robotino2", ["--stamped"],
+     "/cmd_vel geometry_msgs/msg/TwistStamped '{twist: {linear: {x: 0.1}, angular: {z: 0.5}}}'")])
+def test_the_line_that_drives_it_can_be_pasted(scene: str, words: list[str], example: str,
+                                               capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", scene, *LOCAL, "--duration", "0.04", *words]) == 0
+    printed = capsys.readouterr().out
+    assert f"drive it: ros2 topic pub -r 10 {example}\n" in printed and "..." not in printed
+    assert "A command without ROS" in printed
+
+
+def test_a_run_without_a_command_says_that_no_publisher_was_found(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", "robotino2", *LOCAL, "--duration", "0.04"]) == 0
+    assert "no command was heard: no publisher of a command that it hears was found; check" in capsys.readouterr().out
+    with rig_of() as rig:
+        rig.drive(2, 0.0)
+        figures = rig.session.figures()
+        assert figures["found_publisher"] and figures["commands"] == 2
+
+
+def test_the_last_line_says_whose_pose_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["ros2", "robotino2", *LOCAL, "--duration", "0.04", "--frame", "base=base_footprint"]) == 0
+    assert "heading 0.0000 rad (of base_footprint)" in capsys.readouterr().out
+
+
+COMMANDER = """
+import sys, time
+from cyclonedds.domain import DomainParticipant
+from laconic.ros2.messages import dds_name, message_class
+from cyclonedds.pub import DataWriter
+from cyclonedds.topic import Topic
+kind = message_class("geometry_msgs/msg/Twist")
+me = DomainParticipant(79)
+writer = DataWriter(me, Topic(me, "rt/cmd_vel", kind))
+print("there", flush=True)
+while True:
+    writer.write(kind())
+    time.sleep(0.02)
+"""
+
+
+def test_a_cyclone_program_with_the_printed_setting_is_heard_by_a_local_robot() -> None:
+    robot = [sys.executable, "-m", "laconic", "ros2", "robotino2", *LOCAL, "--duration", "4"]
+    with subprocess.Popen(robot, stdout=subprocess.PIPE, text=True) as running:
+        assert running.stdout is not None
+        lines = [running.stdout.readline() for _ in range(3)]
+        found = re.search("CYCLONEDDS_URI='(.*?)'", "".join(lines))
+        assert found is not None
+        with subprocess.Popen([sys.executable, "-c", COMMANDER], env={**os.environ, "CYCLONEDDS_URI": found[1]},
+                              stdout=subprocess.DEVNULL) as peer:
+            said = running.stdout.read()
+            peer.kill()
+    assert re.search(r", [1-9]\d* commands heard", said)
+
+
 def test_a_record_is_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "run.toml"
     assert run(["ros2", "turtlebot3_burger", *LOCAL, "--duration", "0.1", "--record", str(path)]) == 0

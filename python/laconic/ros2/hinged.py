@@ -135,8 +135,7 @@ class HingedRobots:
         each = self.robots[robot]
         found = [fold for fold in each.folds.found() if fold.hinge not in each.folds_told]
         each.folds_told |= {fold.hinge for fold in found}
-        return [f"{fold.hinge} folds: its hinge angle is beyond 90°; a real one would hit what draws it; give "
-                "stop_low_deg and stop_high_deg" for fold in found]
+        return [f"{fold.hinge} folds: its hinge angle is beyond 90°; {fold.remedy()}" for fold in found]
 
     def has_refused(self, robot: int) -> bool:
         """As Motion.has_refused."""

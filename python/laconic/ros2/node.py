@@ -102,6 +102,7 @@ class RobotNode:
         slope_rad = base.scene.vehicle.get("ground", {}).get("slope_rad", 0.0)
         self._upward = GRAVITY_M_PER_S2 * math.cos(slope_rad)  # what the ground's support shows, across it
         self._left_out = 0
+        self.had_publisher = False
         self._publish_all(tf, description, prefix)
         if has_services:
             self._serve()
@@ -225,6 +226,12 @@ class RobotNode:
                 self._tell(now_s, "watchdog", f"{command.topic} was silent for {self.watchdog_s:g} s, so the robot "
                            "stops")
             self.base.command(self.robot, 0.0, 0.0, 0.0)
+
+    def look_for_publishers(self) -> None:
+        """Notes whether a publisher of commands was ever found; readers of Zenoh do not show them."""
+        readers = (*self._commands, *self._drives.values())
+        self.had_publisher = self.had_publisher or any(
+            reader.get_matched_publications() for reader in readers if hasattr(reader, "get_matched_publications"))
 
     def _obey(self, twist: Any, message: Any, now_s: float) -> None:
         wanted = (twist.linear.x, twist.linear.y, twist.angular.z)

@@ -226,6 +226,8 @@ class Session:
         for topic, kind, why in self.participant.new_writers():
             for robot in self.robots:
                 robot.wrong_type(topic, kind, why, now_s)
+        for robot in self.robots:
+            robot.look_for_publishers()
         for text in self.participant.remarks():
             self.say(text)
 
@@ -280,10 +282,14 @@ class Session:
     def figures(self) -> dict[str, Any]:
         """What was done."""
         self._pass_on(self.clock.now_s())
+        for robot in self.robots:
+            robot.look_for_publishers()
         ends = [{"name": robot.node.full_name, "x_m": seen.x_m, "y_m": seen.y_m, "heading_rad": seen.heading_rad}
                 for robot, seen in zip(self.robots, self.base.look(), strict=True)]
         return {"cycles": self.cycles, "is_faster": self.options.speed > 1.0, "period_s": self.period_s,
-                "robots": self.options.robots,
+                "robots": self.options.robots, "frame": self._frames["base"],
+                "found_publisher": None if "zenoh" in self.options.services_for else
+                any(robot.had_publisher for robot in self.robots),
                 "messages": sum(robot.messages for robot in self.robots),
                 "commands": sum(robot.command.count for robot in self.robots), "late_cycles": self.lateness.late,
                 "skipped_s": self.lateness.skipped_s, **self.lateness.figures(),

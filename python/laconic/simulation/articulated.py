@@ -144,10 +144,10 @@ def _farthest(differences: Any) -> float:
     return float(np.max(np.abs(differences), initial=0.0))
 
 
-def trailers_of(scene: Scene, vehicle: ArticulatedVehicle) -> list[tuple[int, str]]:
-    """Hinges whose bodies are drawn and that are no casters, by their numbers and names."""
+def trailers_of(scene: Scene, vehicle: ArticulatedVehicle) -> list[tuple[int, Hinge]]:
+    """Hinges whose bodies are drawn and that are no casters, by their numbers."""
     follows = vehicle.core.lib.LACONIC_MOTION_FOLLOWING
-    return [(at, hinge.name) for at, (hinge, link) in enumerate(zip(scene.hinges, vehicle.model.link, strict=False))
+    return [(at, hinge) for at, (hinge, link) in enumerate(zip(scene.hinges, vehicle.model.link, strict=False))
             if hinge.form != "caster" and link.motion == follows]
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from laconic.core.spelling import wrapped
 from laconic.errors import Refused
 from laconic.scene import Scene
+from laconic.scene.hinges import Hinge
 
 FOLDED_RAD = math.pi / 2.0
 
@@ -22,27 +23,32 @@ class Folded:
     hinge: str
     first_s: float   # of the rows
     most_rad: float
+    has_stops: bool = False
 
     def in_words(self) -> str:
         """For people."""
         return (f"{self.hinge} folds: its hinge angle is beyond 90° from t = {self.first_s:g} s on, at most "
-                f"{math.degrees(self.most_rad):.4g}°; a real one would hit what draws it; give stop_low_deg and "
-                "stop_high_deg to end the run there")
+                f"{math.degrees(self.most_rad):.4g}°; {self.remedy()}")
+
+    def remedy(self) -> str:
+        """What a user can do about it."""
+        return ("its stops allow that" if self.has_stops else
+                "a real one would hit what draws it; give stop_low_deg and stop_high_deg")
 
 
 class Folds:
-    """Watches free hinges that are no casters, by their numbers and names, row by row."""
+    """Watches free hinges that are no casters, by their numbers, row by row."""
 
-    def __init__(self, trailers: Sequence[tuple[int, str]]):
+    def __init__(self, trailers: Sequence[tuple[int, Hinge]]):
         self._trailers, self._seen = trailers, dict[str, Folded]()
 
     def take(self, hinge_angle_rad: Sequence[float] | np.ndarray, time_s: float) -> None:
         """Notes trailers beyond a right angle, and how far they come."""
-        for at, name in self._trailers:
-            angle = abs(wrapped(float(hinge_angle_rad[at])))
+        for at, hinge in self._trailers:
+            angle, name = abs(wrapped(float(hinge_angle_rad[at]))), hinge.name
             if angle > FOLDED_RAD or name in self._seen:
-                seen = self._seen.setdefault(name, Folded(name, time_s, angle))
-                self._seen[name] = Folded(name, seen.first_s, max(seen.most_rad, angle))
+                seen = self._seen.setdefault(name, Folded(name, time_s, angle, hinge.has_stops))
+                self._seen[name] = replace(seen, most_rad=max(seen.most_rad, angle))
 
     def found(self) -> tuple[Folded, ...]:
         """Those that folded."""
@@ -57,7 +63,7 @@ def refusal_of_run(scene: Scene, why: Refused, when: str = "") -> Refused:
 class KeptRows:
     """The outputs of a run, row by row; `trailers` are watched for folds."""
 
-    def __init__(self, kept: Sequence[str], trailers: Sequence[tuple[int, str]]):
+    def __init__(self, kept: Sequence[str], trailers: Sequence[tuple[int, Hinge]]):
         self.kept, self._rows, self._folds = kept, list[list[float]](), Folds(trailers)
         self.lifted: tuple[int, float] | None = None  # the first wheel that carries nothing, from 1; and when, in s
 

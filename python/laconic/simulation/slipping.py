@@ -128,7 +128,7 @@ class SlippingRows(KeptRows):
     """The outputs of a run on ground with friction."""
 
     def __init__(self, scene: Scene, vehicle: SlippingVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
-        super().__init__(kept, [(at, hinge.name) for at, hinge in enumerate(scene.hinges)
+        super().__init__(kept, [(at, hinge) for at, hinge in enumerate(scene.hinges)
                                 if hinge.kind == "free" and hinge.form != "caster"])
         self._inputs = inputs
         self._origin_of, wheels = Loads(scene).origin_of, scene.wheel_count

@@ -49,8 +49,7 @@ WEB_EXPORT(laconic_web_place) int32_t laconic_web_place(laconic_web_robot *robot
     robot->tree_start.wheels_stand = wheels_stand;
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++)
         robot->tree_start.wheel_speed_rad_per_s[i] = robot->start.wheel_speed_rad_per_s[i];
-    return kept(robot,
-                laconic_tree_state_set(&robot->tree_state, &robot->tree_model, &robot->tree_start, &robot->why));
+    return kept(robot, laconic_tree_state_set(&robot->tree_state, &robot->tree_model, &robot->tree_start, &robot->why));
 }
 
 /* By how much the start was changed to a motion that the wheels allow [m/s]. */

@@ -42,8 +42,8 @@ typedef struct laconic_web_robot {
 #ifdef LACONIC_WEB_HINGES
     laconic_tree_vehicle tree; /* bodies, and the bodies of wheels; its base is made of the vehicle */
     laconic_tree_start tree_start;
-    laconic_tree_input tree_input; /* of hinges; its base is made of the input       */
-    bool slips;                    /* on ground with friction: the members "tree" act */
+    laconic_tree_input tree_input;          /* of hinges; its base is made of the input       */
+    bool slips;                             /* on ground with friction: the members "tree" act */
     laconic_real twist[3], twist_before[3]; /* at the end of the last step, and before the last run */
     laconic_articulated_model model;
     laconic_articulated_integrator integrator;
@@ -51,7 +51,7 @@ typedef struct laconic_web_robot {
     laconic_tree_model tree_model;
     laconic_tree_state tree_state;
     double step_s;
-    laconic_real changed_m_per_s;            /* by which the start was moved to a motion that is allowed */
+    laconic_real changed_m_per_s; /* by which the start was moved to a motion that is allowed */
     double steps, steps_before;
     laconic_web_hinged_outputs outputs;
 #else

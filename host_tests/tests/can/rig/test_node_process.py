@@ -11,7 +11,7 @@ import socket
 import subprocess
 import sys
 import threading
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -47,6 +47,23 @@ def test_a_second_client_learns_that_the_line_is_occupied_and_the_first_is_not_d
             assert line.read().count(b"\aoccupied") == 1  # again, for who has flushed the line; then it ends
         first.sendall(b"V\r")
         assert first.recv(16) == b"V1010\r"
+
+
+def test_the_fifth_client_of_a_shared_node_learns_that_four_are_on_it() -> None:
+    with node_process("double", ID_BASE, "--shared") as port, ExitStack() as clients:
+        for _ in range(4):
+            client = clients.enter_context(socket.create_connection(("127.0.0.1", port), timeout=5.0))
+            client.sendall(b"V\r")
+            assert client.recv(16) == b"V1010\r"
+        fifth = clients.enter_context(socket.create_connection(("127.0.0.1", port), timeout=5.0))
+        said = fifth.recv(200)
+        assert said.startswith(b"\aoccupied") and b"four clients" in said and b"one client" not in said
+
+
+def test_the_help_of_the_node_tells_who_hears_it_on_a_shared_port() -> None:
+    said = subprocess.run([built("bin/laconic-node-double"), "--help"], capture_output=True, text=True).stdout
+    words = " ".join(said.partition("--shared  ")[2].partition("--socketcan")[0].split())
+    assert "from and to the node itself" in words and "only among clients that have sent it one" in words
 
 
 @pytest.mark.parametrize("option", [[], ["--shared"]])

@@ -56,6 +56,26 @@ def test_a_stalled_pc_that_trips_the_watchdog_is_named_and_not_the_node() -> Non
     assert judgement.figures["rig_longest_pause_us"] >= 300_000
 
 
+def late_run(node: NodeClient, seconds: float, stalls_us: int) -> Judgement:
+    """A free run whose node is not served for so long, once."""
+    calls = 0
+
+    def moved(_: float) -> None:
+        nonlocal calls
+        calls += 1
+        if calls == DISTURBED_AT:
+            node.link.clock.time_us += stalls_us
+
+    return judge_free_run(node, SCENE, seconds, 1000, 0, {}, moved=moved)
+
+
+def test_late_periods_are_those_of_this_run_and_not_of_earlier_ones() -> None:
+    with own_node("virtual", "double") as node:
+        assert late_run(node, 0.6, 30_000).figures["late_periods"] > 10
+        assert late_run(node, 0.6, 0).figures["late_periods"] == 0
+        assert 0 < late_run(node, 0.6, 5_000).figures["late_periods"] < 10
+
+
 def test_a_stalled_pc_without_watchdog_fails_the_verdict_about_the_rig_alone() -> None:
     judgement = disturbed(stall, seconds=1.0, watchdog_ms=0)
     assert [each.name for each in judgement.verdicts if not each.passed] == ["rig"]

@@ -11,6 +11,7 @@ import zlib
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from laconic.can.rig.a2l import EACH, OUTPUTS, PARAMETERS, SEGMENT, a2l_text, ou
 from laconic.can.rig.boards import own_node, why_no_emulation
 from laconic.can.rig.buses import NodeOnBus, connected, node_in_process, node_process
 from laconic.can.rig.client import NodeClient
+from laconic.can.rig.free_judge import judge_free_run
 from laconic.can.rig.lockstep import load_scene
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
@@ -155,6 +157,33 @@ def test_the_command_writes_the_file_and_drives_nothing(tmp_path: Path, capsys: 
     assert "CAN_ID_MASTER 0x6BF" in path.read_text() and "CAN_ID_SLAVE 0x6BE" in path.read_text()
     assert run(["rig", "s1", "--a2l", str(path), "--free-run"]) == 2
     assert "--free-run: has no meaning beside --a2l" in capsys.readouterr().err
+
+
+def test_numbers_that_name_a_choice_have_texts_and_limits() -> None:
+    text = a2l_text(SCENE)
+    for name, table, low, high in (("wheel_kind_1", "WHEEL_KIND", 1, 2), ("wheel_locked_2", "YES_NO", 0, 1),
+                                   ("wheel_driven_3", "YES_NO", 0, 1), ("motor_circuit_1", "MOTOR_CIRCUIT", 0, 2)):
+        entry = re.findall(rf"CHARACTERISTIC {name} .*\n +VALUE 0x\w+ of_ULONG 0 (\w+) (\d+) (\d+)", text)
+        assert entry == [(f"text_{table}", str(low), str(high))]
+    state = re.findall(r"MEASUREMENT state .*\n +ULONG (\w+) 0 0 0 (\d+)", text)
+    assert state == [("text_state", str(max(wire()["HEARTBEAT"].fields["state"].choices)))]
+    assert 'texts_MOTOR_CIRCUIT "" TAB_VERB 3 0 "controller" 1 "open" 2 "shorted"' in text
+    used, made = (set(re.findall(rf"{what} texts_(\w+)", text)) for what in ("COMPU_TAB_REF", "begin COMPU_VTAB"))
+    assert used == made and set(re.findall(r" text_(\w+) ", text)) == used
+
+
+@pytest.mark.parametrize("name", ["s1", "kuka_youbot", "tricycle_agv"])
+def test_descriptions_tell_what_a_number_is_and_not_how_frames_hold_it(name: str) -> None:
+    told = {each.name: each.text for each in (*parameters(read_scene(name)), *outputs(read_scene(name)))}
+    assert told["wheel_driven_1"].startswith("Whether the wheel has a motor")  # 1 is driven
+    assert told["wheel_speed_2"] == "Speed of wheel 2"
+    assert not [text for text in told.values() if "group" in text or "has no motor" in text]
+
+
+def test_estimates_are_in_the_file_only_where_the_scene_asks_the_node_for_them() -> None:
+    assert not [each for each in addresses(SCENE) if each.startswith("error_")]
+    asking = replace(SCENE, rig=replace(SCENE.rig, frames=("NU", "ERROR_ESTIMATE")))
+    assert len([each for each in addresses(asking) if each.startswith("error_")]) == 8
 
 
 def test_pya2l_reads_the_file() -> None:
@@ -291,6 +320,20 @@ def test_a_run_of_the_rig_goes_on_while_a_master_is_refused() -> None:
         assert master.read(addresses(scene)["steps"], "<I") == 10
 
 
+@pytest.mark.parametrize(("mass_kg", "is_told"), [(14.0, True), (0.0, False)])
+def test_the_rig_tells_that_numbers_were_changed_by_xcp_if_the_node_took_them(mass_kg: float, is_told: bool) -> None:
+    commands = [b"\xff\0", b"\xf6\0\0\0" + struct.pack("<I", addresses(SCENE)["mass_kg"]),
+                b"\xf0\x04" + struct.pack("<f", mass_kg)]
+    with own_node("virtual", "double") as node:
+
+        def moved(_: float) -> None:  # one command in each cycle: a master waits for each answer
+            if commands:
+                node.link.send_message(can.Message(arbitration_id=COMMAND, data=commands.pop(0), is_extended_id=False))
+
+        judgement = judge_free_run(node, SCENE, 0.5, 1000, 100, {}, moved=moved)
+    assert len([note for note in judgement.notes if "changed by XCP" in note]) == is_told
+
+
 # ---- pyxcp
 
 
@@ -400,12 +443,24 @@ def test_the_programs_of_docs_rig_ports_md_calibrate_and_measure(start: str, nee
         node.start_free_run(watchdog_ms=0)
         exec(program_of_page(start).replace(":4000", f":{port}"), {})
         out = capsys.readouterr().out
+        assert needs != "pyxcp" or hex(zlib.crc32(struct.pack("<f", 12.5))) in out
         assert "laconic_2" in out and len(re.findall(sample, out, re.M)) >= 5
         master = Master(node)
         master.wait(deque(), 0.2)  # what the program has heard on the same bus
         master.answers.clear()
         master.ask(0xFF, 0)
         assert master.read(addresses(SCENE)["mass_kg"]) == 12.5
+
+
+def test_the_python_can_program_of_docs_rig_ports_md_ends_where_only_heartbeats_come(tmp_path: Path) -> None:
+    key = tmp_path / "robot.key"
+    key.write_text("00112233445566778899aabbccddeeff")  # with it a node has no slave
+    program = program_of_page("import struct\nimport time\n\nimport can").replace(" + 2.0  ", " + 0.5  ")
+    with node_process("double", ID_BASE, "--key", str(key)) as port:
+        begun = time.monotonic()
+        with pytest.raises(SystemExit, match="no answer"):
+            exec(program.replace(":4000", f":{port}"), {})
+        assert time.monotonic() - begun < 5.0
 
 
 def test_pya2l_reads_the_file_as_the_page_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,

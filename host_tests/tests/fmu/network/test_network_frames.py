@@ -111,9 +111,9 @@ def as_operations(frames: list[Frame]) -> bytes:
 
 
 def of_any_build(frames: list[Frame]) -> list[tuple[int, Any]]:
-    """Frames without what IDENTITY says of hinges, which the library's node takes and the FMU's does not."""
-    identity = wire()["IDENTITY"]
-    return [(identifier, {key: value for key, value in identity.unpack(data).items() if key not in ("hinges", "crc")}
+    """Frames without what IDENTITY says of hinges and slip, which the library's node takes and the FMU's does not."""
+    identity, of_build = wire()["IDENTITY"], ("hinges", "slip", "crc")
+    return [(identifier, {key: value for key, value in identity.unpack(data).items() if key not in of_build}
              if identifier == ID_BASE + identity.offset else data) for identifier, data in frames]
 
 

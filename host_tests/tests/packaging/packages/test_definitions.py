@@ -17,7 +17,9 @@ USUAL: tuple[str, ...] = ()
 OTHERS = ["LACONIC_SINGLE", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=2", "LACONIC_WITH_OWN_WHEELS=0",
           "LACONIC_WITH_SLOPE=0", "LACONIC_WITH_FRICTION=0", "LACONIC_WITH_EXPONENTIAL_GAUSS=0"]
 NODE_OTHERS = ["LACONIC_NODE_CAN_FD=0", "LACONIC_NODE_WITH_DRIVES=0", "LACONIC_NODE_WITH_SENSORS=0",
-               "LACONIC_NODE_WITH_XCP=0", "LACONIC_NODE_AXIS_BYTES=512", "LACONIC_MAX_WHEELS=4", "LACONIC_SINGLE"]
+               "LACONIC_NODE_WITH_XCP=0", "LACONIC_NODE_WITH_SLIP=0", "LACONIC_NODE_AXIS_BYTES=512",
+               "LACONIC_MAX_WHEELS=4", "LACONIC_SINGLE"]
+NAMED = {"LACONIC_NODE_WITH_SLIP": "HINGES_1_of_bodies"}  # what the linker misses, where it is not the name
 CALLS = {
     "plant": "static laconic_plant p; laconic_start s = {0}; laconic_vehicle v = {0};"
              "return (int)laconic_plant_start(&p, &v, &laconic_rk4, (laconic_real)0.01, &s, NULL);",
@@ -220,13 +222,15 @@ def test_a_port_and_a_node_that_differ_do_not_link(definition, tmp_path):
     folders = [SOURCE_DIR / "core_c/include", SOURCE_DIR / "firmware_stub/include", wire]
     libraries = [built(f"firmware_stub/lib{name}.a") for name in ("laconic_node_double", "laconic_secure")]
     libraries += [built("firmware_stub/liblaconic_wire.a"), built("core_c/liblaconic.a")]
-    done = run(tmp_path, "-DLACONIC_NODE_WITH_ESTIMATE=1", "-DLACONIC_NODE_WITH_HINGES=1", "-DLACONIC_NODE_WITH_XCP=1",
+    done = run(tmp_path, "-DLACONIC_NODE_WITH_ESTIMATE=1", "-DLACONIC_NODE_WITH_HINGES=1", "-DLACONIC_NODE_WITH_SLIP=1",
+               "-DLACONIC_NODE_WITH_XCP=1",
                *([f"-D{definition}"] if definition else []),
                *(f"-I{folder}" for folder in folders), "port.c", *libraries, "-o", "port")
     if definition is None:
         assert done.returncode == 0, done.stderr
     else:
-        assert any(definition.partition("=")[0] in each for each in missing_of_node(done))
+        name = definition.partition("=")[0]
+        assert any(NAMED.get(name, name) in each for each in missing_of_node(done))
 
 
 def missing_of_node(done: subprocess.CompletedProcess[str]) -> set[str]:

@@ -48,6 +48,7 @@ class NodeVehicle:
     def __init__(self, client: NodeClient, scene: Scene, settings: DriveSettings):
         self.client, self.scene, self.settings = client, scene, settings
         self.lateness = Lateness()
+        self._late_before = 0
         self._last_nu: tuple[Frame, bytes] | None = None
         self._pose: Pose | None = None
         self._own = range(client.link.id_base, client.link.id_base + ID_STRIDE)
@@ -69,6 +70,7 @@ class NodeVehicle:
         self.client.link.listeners.append(self._hear_early)
         try:
             self._load(without_sensors(played(self.scene)))
+            self._count_before()
             self.choose_frames(*self.watched)
             self.client.start_drives()
         except NodeRefused as refused:
@@ -89,6 +91,12 @@ class NodeVehicle:
     def _take_early(self) -> list[can.Message]:
         early, self._early = self._early, []
         return early
+
+    def _count_before(self) -> None:
+        """Late periods of earlier runs, which the node's counter includes; one that was empty has had none."""
+        if self.client.found != "empty":
+            self.choose_frames("COUNTERS")
+            self._late_before = self.client.counter("late_periods")
 
     def choose_frames(self, *names: str) -> None:
         """The frames of the node that come from now on; none: it is silent."""
@@ -220,7 +228,7 @@ class NodeVehicle:
                 self.lateness.periods, self.lateness.worst_us = values["steps"], values["worst_lateness"]
                 wanted.discard(frame.name)
             elif frame.name == "COUNTERS" and "late_periods" in values:
-                self.lateness.late_periods = values["late_periods"]
+                self.lateness.late_periods = values["late_periods"] - self._late_before
                 wanted.discard(frame.name)
 
 

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from laconic.base.paths import SOURCE_DIR
+from laconic.can.rig.client import is_estimated
 from laconic.can.rig.wire import ID_BASE, wire
-from laconic.core.fields import WHEEL
+from laconic.core.fields import WHEEL, Field
 from laconic.core.plant import PLACED_BY
 from laconic.scene import Scene
 from laconic.scene.reference import unit_of
@@ -25,12 +26,18 @@ ASCII = str.maketrans({"²": "^2", "·": "*", "√": "sqrt ", "Ω": "Ohm", "ν":
 LARGEST = 3.4e38  # of single precision
 LIMITS = {"POSITIVE": (0.0, LARGEST), "NOT_NEGATIVE": (0.0, LARGEST), "SHARE": (0.0, 1.0), "INCLINE": (0.0, 1.5)}
 INTEGERS = {"WHEEL_KIND": (1.0, 2.0), "FLAG": (0.0, 1.0), "ABSENCE": (0.0, 1.0), "INTEGER": (0.0, 2147483647.0)}
-OF_STEPS = (("steps", "steps since the start"), ("state", "state of the node, as in HEARTBEAT"))
+OF_STEPS = (("steps", "steps since the start", ""), ("state", "state of the node, as in HEARTBEAT", "state"))
+PRESENT = {"wheel_undriven": "Whether the wheel has a motor; without one, its gain and damping are 0"}  # is driven
+WORDS_OF = {"WHEEL_KIND": {1: "roller", 2: "fixed"}, "YES_NO": {0: "no", 1: "yes"},  # texts that tools show
+            "MOTOR_CIRCUIT": {0: "controller", 1: "open", 2: "shorted"}}
 
 # Signal of SELECT → frame and signals that have the same numbers; a stem that ends in _ is of each wheel or hinge.
-OF_WHEELS = {"take_voltage": ("VOLTAGE", "voltage_"), "raw_wheel_speed": ("WHEEL_SPEED", "wheel_speed_"),
-             "raw_wheel_angle": ("WHEEL_ANGLE", "wheel_angle_"), "raw_encoder": ("ENCODER", "count")}
-OF_HINGES = {"raw_hinge_angle": ("HINGE_ANGLE", "hinge_angle_"), "raw_hinge_rate": ("HINGE_RATE", "hinge_rate_")}
+OF_WHEELS = {"take_voltage": ("VOLTAGE", "voltage_", "Voltage"),
+             "raw_wheel_speed": ("WHEEL_SPEED", "wheel_speed_", "Speed"),
+             "raw_wheel_angle": ("WHEEL_ANGLE", "wheel_angle_", "Angle"),
+             "raw_encoder": ("ENCODER", "count", "Count of the encoder")}
+OF_HINGES = {"raw_hinge_angle": ("HINGE_ANGLE", "hinge_angle_", "Angle"),
+             "raw_hinge_rate": ("HINGE_RATE", "hinge_rate_", "Rate")}
 SINGLE = {"raw_nu": ("NU", ("nu_1", "nu_2", "nu_3")), "raw_pose": ("POSE", ("x", "y", "heading")),
           "raw_velocity": ("VELOCITY", ("ahead", "left", "yaw_rate"))}
 IMU = ("acceleration_x", "acceleration_y", "yaw_rate")
@@ -122,6 +129,7 @@ class Number:
     low: float = -LARGEST
     high: float = LARGEST
     stays: bool = False  # the node does not let a master write it
+    words: str = ""      # the table of its texts
 
 
 def identification() -> str:
@@ -136,7 +144,8 @@ def a2l_text(scene: Scene, id_base: int = ID_BASE) -> str:
     name = identification()
     lines = ["ASAP2_VERSION 1 61", f'/begin PROJECT laconic {quoted(scene.name)}', f"  /begin MODULE {name} \"\"",
              *interface(scene, id_base), '    /begin MOD_COMMON ""', "      BYTE_ORDER MSB_LAST", "    /end MOD_COMMON",
-             *(line for unit in units for line in method(unit)), *layouts()]
+             *(line for unit in units for line in method(unit)), *layouts(),
+             *(line for table, words in tables().items() for line in texts(table, words))]
     for each in numbers:
         lines += characteristic(each, scene.has_hinges or each.stays)
     for each in measured:
@@ -159,9 +168,25 @@ def parameters(scene: Scene) -> Iterator[Number]:
             kind = "FLOAT32_IEEE"
             if field.kind != "REAL":
                 kind, (low, high) = "ULONG", INTEGERS[field.kind]
-            name, text = (name.replace("undriven", "driven"), words.get(field.name, field.name))
+            table = table_of(field)
+            if table:
+                low, high = min(WORDS_OF[table]), max(WORDS_OF[table])
+            name = name.replace("undriven", "driven")
+            text = PRESENT.get(field.name) or words.get(field.name, field.name)
             yield Number(name, text, unit_of(field.name), PARAMETERS + EACH * field.number + 4 * k, kind, low, high,
-                         field.counts or (field.table == WHEEL and field.key in PLACED_BY))
+                         field.counts or (field.table == WHEEL and field.key in PLACED_BY), table)
+
+
+def table_of(field: Field) -> str:
+    """The name of the table of a field's texts; empty where it is a plain number."""
+    if field.kind in ("FLAG", "ABSENCE"):
+        return "YES_NO"
+    return next((each for each in (field.kind, field.identifier) if each in WORDS_OF), "")
+
+
+def tables() -> dict[str, dict[int, str]]:
+    """The texts of numbers that name a choice."""
+    return {**WORDS_OF, "state": dict(wire()["HEARTBEAT"].fields["state"].choices)}
 
 
 def of_items(scene: Scene) -> dict[str, int]:
@@ -172,8 +197,9 @@ def of_items(scene: Scene) -> dict[str, int]:
 def outputs(scene: Scene) -> Iterator[Number]:
     """What a master can measure, named as in laconic.dbc."""
     select = wire()["SELECT"].fields
-    for k, (name, text) in enumerate(OF_STEPS):
-        yield Number(name, text, "", OUTPUTS + 4 * k, "ULONG", 0.0, 4294967295.0)
+    for k, (name, text, table) in enumerate(OF_STEPS):
+        high = max(tables()[table]) if table else 4294967295.0
+        yield Number(name, text, "", OUTPUTS + 4 * k, "ULONG", 0.0, high, words=table)
     for signal, names in named_outputs(scene).items():
         for k, (name, text, unit) in enumerate(names):
             yield Number(name, text, unit, OUTPUTS + EACH * select[signal].start + 4 * k)
@@ -183,28 +209,35 @@ def named_outputs(scene: Scene) -> dict[str, list[tuple[str, str, str]]]:
     """Signal of SELECT → names, texts and units of its numbers."""
     wheels = scene.wheel_count
     found = {signal: [of_frame(frame, each) for each in signals] for signal, (frame, signals) in SINGLE.items()}
-    for signal, (frame, stem) in OF_WHEELS.items():
-        found[signal] = [of_frame(frame, stem, k) for k in range(wheels)]
+    for signal, (frame, stem, what) in OF_WHEELS.items():
+        found[signal] = [of_item(frame, stem, f"{what} of wheel", k) for k in range(wheels)]
     found["raw_energy"] = [("energy", "Kinetic energy", "J")]
-    found["raw_axle_torque"] = [(f"axle_torque_{k + 1}", "Torque on the axle besides the motor's", "N*m")
+    found["raw_axle_torque"] = [(f"axle_torque_{k + 1}", f"Torque on the axle of wheel {k + 1} besides the motor's",
+                                 "N*m")
                                 for k in range(wheels)]
     if scene.has_hinges:
-        for signal, (frame, stem) in OF_HINGES.items():
-            found[signal] = [of_frame(frame, stem, k) for k in range(len(scene.hinges))]
+        for signal, (frame, stem, what) in OF_HINGES.items():
+            found[signal] = [of_item(frame, stem, f"{what} of hinge", k) for k in range(len(scene.hinges))]
         return {signal: names for signal, names in found.items() if signal not in ("raw_nu", "raw_encoder")}
     del found["raw_velocity"]
     origin = [(f"origin_acceleration_{axis}", "Acceleration of the body's origin", "m/s^2") for axis in ("x", "y")]
     found["raw_imu"] = origin + [(f"imu_{each}", *of_frame("IMU", each)[1:]) for each in IMU]
-    found["send_error_estimate"] = [(f"error_{each}", *of_frame("ERROR_ESTIMATE", each)[1:]) for each in ESTIMATES]
+    if is_estimated(scene):  # without it the node refuses these
+        found["send_error_estimate"] = [(f"error_{each}", *of_frame("ERROR_ESTIMATE", each)[1:]) for each in ESTIMATES]
     return found
 
 
-def of_frame(frame: str, signal: str, k: int | None = None) -> tuple[str, str, str]:
-    """Name, text and unit of a signal, or of number `k` of those that begin with the same stem."""
+def of_frame(frame: str, signal: str) -> tuple[str, str, str]:
+    """Name, text and unit of a signal."""
     message = wire().database.get_message_by_name(frame)
-    found = next(each for each in message.signals if each.name == signal + ("1" if signal.endswith("_") else ""))
-    name = signal if k is None else f"{'encoder_' if signal == 'count' else signal}{k + 1}"
-    return name, re.split(r"[.:,;]| \(", message.comment or frame)[0], found.unit or ""
+    found = next(each for each in message.signals if each.name == signal)
+    return signal, re.split(r"[.:,;]| \(", message.comment or frame)[0], found.unit or ""
+
+
+def of_item(frame: str, stem: str, what: str, k: int) -> tuple[str, str, str]:
+    """The same of wheel or hinge `k`, by the first signal that begins with the stem."""
+    unit = of_frame(frame, stem + ("1" if stem.endswith("_") else ""))[2]
+    return f"{'encoder_' if stem == 'count' else stem}{k + 1}", f"{what} {k + 1}", unit
 
 
 def descriptions() -> dict[str, str]:
@@ -232,16 +265,28 @@ def method(unit: str) -> Iterator[str]:
     yield f'    /begin COMPU_METHOD {compu_method(unit)} "" IDENTICAL "%.7" {quoted(unit)} /end COMPU_METHOD'
 
 
+def texts(table: str, words: dict[int, str]) -> Iterator[str]:
+    """A number shown as one of several texts."""
+    pairs = " ".join(f"{number} {quoted(text)}" for number, text in sorted(words.items()))
+    yield f'    /begin COMPU_METHOD text_{table} "" TAB_VERB "%1.0" "" COMPU_TAB_REF texts_{table} /end COMPU_METHOD'
+    yield f'    /begin COMPU_VTAB texts_{table} "" TAB_VERB {len(words)} {pairs} /end COMPU_VTAB'
+
+
 def layouts() -> Iterator[str]:
     """The two types of numbers."""
     for name in ("FLOAT32_IEEE", "ULONG"):
         yield f"    /begin RECORD_LAYOUT of_{name} FNC_VALUES 1 {name} COLUMN_DIR DIRECT /end RECORD_LAYOUT"
 
 
+def method_of(each: Number) -> str:
+    """The name of a number's method."""
+    return f"text_{each.words}" if each.words else compu_method(each.unit)
+
+
 def characteristic(each: Number, fixed: bool) -> Iterator[str]:
     """A number that can be calibrated, or only read."""
     yield f"    /begin CHARACTERISTIC {each.name} {quoted(each.text)}"
-    yield (f"      VALUE 0x{each.address:X} of_{each.type} 0 {compu_method(each.unit)} {each.low:.9g} {each.high:.9g}"
+    yield (f"      VALUE 0x{each.address:X} of_{each.type} 0 {method_of(each)} {each.low:.9g} {each.high:.9g}"
            + (" READ_ONLY" if fixed else ""))
     yield "    /end CHARACTERISTIC"
 
@@ -249,7 +294,7 @@ def characteristic(each: Number, fixed: bool) -> Iterator[str]:
 def measurement(each: Number) -> Iterator[str]:
     """A number that can be measured."""
     yield f"    /begin MEASUREMENT {each.name} {quoted(each.text)}"
-    yield (f"      {each.type} {compu_method(each.unit)} 0 0 {each.low:.9g} {each.high:.9g} "
+    yield (f"      {each.type} {method_of(each)} 0 0 {each.low:.9g} {each.high:.9g} "
            f"ECU_ADDRESS 0x{each.address:X}")
     yield "    /end MEASUREMENT"
 

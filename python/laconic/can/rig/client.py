@@ -228,6 +228,16 @@ class NodeClient:
         """Chooses frames and raw numbers: the one-bit signals of SELECT by name; what is not named is off."""
         self.command("SELECT", **bits)
 
+    def counter(self, name: str) -> int:
+        """A number of COUNTERS, which must be selected: its pages come in turn, one each 100 ms. 0 where it does not
+        come in time."""
+        deadline_us = self.link.deadline_us(self.timeout_s)
+        while (received := self.link.receive_until(deadline_us)) is not None:
+            values = self._take(received)
+            if received[0].name == "COUNTERS" and name in values:
+                return values[name]
+        return 0
+
     def start_lockstep(self) -> None:
         """From now on the node steps at every SYNC."""
         self._heartbeat = None

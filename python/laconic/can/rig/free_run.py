@@ -42,7 +42,8 @@ class FreeRun:
     elapsed_s: float = 0.0
     node_steps: int = 0
     worst_lateness_us: int = 0
-    late_periods: int = 0
+    late_before: int = 0    # late periods of earlier runs, which the node's counter includes
+    late_periods: int = 0   # of this run
     state: str = "ready"
     overranges: int = 0
     fed_answers: int = 0    # number of answers at the last HEARTBEAT by which the node followed the rig's voltages
@@ -71,6 +72,7 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
         load_scene(node, scene)
         held = Held(scene.inputs_on_grid())
     node.select(**select_bits({*frames, "COUNTERS"}))
+    run.late_before = node.counter("late_periods")
     voltages = Voltages(node, scene)
     start_us = node.link.clock.now_us()
     start_clock(node, scene, rate_Hz, watchdog_ms)
@@ -150,7 +152,7 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
     elif frame.name == "HEARTBEAT":
         take_heartbeat(run, values)
     elif frame.name == "COUNTERS" and "late_periods" in values:
-        run.late_periods = values["late_periods"]
+        run.late_periods = values["late_periods"] - run.late_before
     elif frame.name == "RESULT":
         node.check(values)
 

@@ -11,10 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import can
 import numpy as np
 
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import ENDINGS
+from laconic.can.rig.link import Link
+from laconic.can.rig.wire import wire
 from laconic.errors import LaconicError
 from laconic.scene import Scene
 
@@ -98,6 +101,27 @@ def within(name: str, ours: np.ndarray, theirs: np.ndarray, limit: np.ndarray | 
 Moved = Callable[[float], None]  # called with the number of further steps that the run has taken
 
 
+class Calibration:
+    """Hears on the bus whether a master of XCP changes numbers of the vehicle: a command that the node affirms."""
+
+    COMMANDS, AFFIRMED = {0xF0, 0xEB, 0xE4}, 0xFF  # DOWNLOAD, SET_CAL_PAGE, COPY_CAL_PAGE
+
+    def __init__(self, link: Link):
+        self.happened, self._asked = False, False
+        self._command, self._answer = (link.id_base + wire().xcp[name].offset
+                                       for name in ("XCP_COMMAND", "XCP_RESPONSE"))
+
+    def hear(self, message: can.Message) -> None:
+        """One frame of the bus."""
+        if message.is_extended_id or message.is_error_frame or not message.data:
+            return
+        if message.arbitration_id == self._command:
+            self._asked = message.data[0] in self.COMMANDS
+        elif message.arbitration_id == self._answer and message.data[0] >= 0xFE:
+            self.happened |= self._asked and message.data[0] == self.AFFIRMED
+            self._asked = False
+
+
 class Trial(ABC):
     """One run of a scene against a node, in one of the modes."""
 
@@ -107,13 +131,17 @@ class Trial(ABC):
         self.node, self.scene = node, scene
         self.wanted = steps or scene.steps()
         self.ending: LaconicError | None = None
+        self.calibration = Calibration(node.link)
 
     def drive(self, moved: Moved = lambda _: None) -> None:
         """Runs to the end; an error that ends the run early is kept in `ending`."""
+        self.node.link.listeners.append(self.calibration.hear)
         try:
             self.run_it(moved)
         except ENDINGS as ending:
             self.ending = ending
+        finally:
+            self.node.link.listeners.remove(self.calibration.hear)
 
     def judge(self) -> Judgement:
         """Judges every step that was answered."""
@@ -121,6 +149,9 @@ class Trial(ABC):
         if self.done():
             self.judge_it(judgement)
         judgement.ended(self.ending, self.done(), self.wanted)
+        if self.calibration.happened:
+            judgement.notes.append("numbers of the vehicle were changed by XCP during the run; the reference run keeps "
+                                   "the scene's, so signals differ")
         return judgement
 
     @abstractmethod

@@ -75,9 +75,12 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     if not 0.0 < prior_percent <= 100.0:
         raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
     given = read_scene(scene)
+    names = names_in(free) if free is not None else ()
+    modelled = [name for name in names if name != "controller"]
+    if modelled and not given.has_hinges:
+        geometry_of(given, modelled)  # refuses a wrong name before logs are read
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []
-    names = names_in(free) if free is not None else ()
     if all(name in geometry.ROLLED for name in names):
         given, [runs, others] = rolled_alone(given, runs, others)
     names = names or geometry.usual(given)

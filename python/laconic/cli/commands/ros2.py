@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from laconic.ros2.session import Session
 
 
+LOCAL_PEERS = ('<General><Interfaces><NetworkInterface name="lo"/></Interfaces></General>'
+               '<Discovery><Peers><Peer address="localhost"/></Peers></Discovery>')
 MOST_ENDS = 5  # robots whose last pose is printed
 
 
@@ -36,7 +38,7 @@ MOST_ENDS = 5  # robots whose last pose is printed
 @one_of("--rmw", tuple(MIDDLEWARES), "Middleware of the peers, instead of RMW_IMPLEMENTATION or "
         "both of DDS; zenoh is experimental")
 @click.option("--domain", type=int, help="Domain.  [default: ROS_DOMAIN_ID, else 0]")
-@click.option("--local", "is_local", is_flag=True, help="Peers on this machine alone, by unicast.")
+@click.option("--local", "is_local", is_flag=True, help="This machine alone, or a network without multicast.")
 @click.option("--router", default="tcp/localhost:7447", metavar="ENDPOINT", show_default=True,
               help="With --rmw zenoh: where to connect.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
@@ -130,7 +132,7 @@ def domain_of(given: int | None) -> int:
 
 
 def introduction(session: Session) -> str:
-    """How to drive it, in two lines."""
+    """What it hears and how to drive it."""
     options, robots = session.options, session.robots
     topic = robots[0].command_topic.removeprefix("rt")
     kind = {None: "Twist or TwistStamped", True: "TwistStamped", False: "Twist"}[options.is_stamped]
@@ -142,8 +144,40 @@ def introduction(session: Session) -> str:
         if session.moves_at_start() else ""
     return (f"{session.scene.name}: {robots[0].node.full_name} in domain {options.domain}, {options.rate_Hz:g} Hz, "
             f"{stamps}; hears {kind} on {topic}{drives}{more}{torques}\n"
-            f"drive it: ros2 topic pub -r 10 {topic} geometry_msgs/msg/{kind.partition(' ')[0]} ... ; stop with Ctrl-C"
-            f"{moves}")
+            f"drive it: {example_of(session, topic)}\n"
+            f"without ROS: the program under \"A command without ROS\" in docs/ros2.md{peers_of(session)}; "
+            f"stop with Ctrl-C{moves}")
+
+
+def example_of(session: Session, topic: str) -> str:
+    """A command for a ROS machine that can be pasted: of a car its Ackermann command, else a velocity."""
+    rate = "ros2 topic pub -r 10"
+    if session.base.is_car:
+        return (f"{rate} {topic.removesuffix('cmd_vel')}ackermann_cmd ackermann_msgs/msg/AckermannDriveStamped "
+                "'{drive: {speed: 0.5, steering_angle: 0.1}}'")
+    velocity = "linear: {x: 0.1}, angular: {z: 0.5}"
+    if session.options.is_stamped:
+        return f"{rate} {topic} geometry_msgs/msg/TwistStamped '{{twist: {{{velocity}}}}}'"
+    return f"{rate} {topic} geometry_msgs/msg/Twist '{{{velocity}}}'"
+
+
+def peers_of(session: Session) -> str:
+    """With --local, the setting by which a program on Cyclone DDS finds this robot, which multicast does not show."""
+    if not session.options.is_local or "zenoh" in session.options.services_for:
+        return ""
+    return f", started with CYCLONEDDS_URI='{LOCAL_PEERS}'"
+
+
+def nothing_heard(figures: dict[str, Any]) -> list[str]:
+    """A line for a run without commands that names its likely cause."""
+    if figures["commands"]:
+        return []
+    if figures["found_publisher"] is None:  # Zenoh does not show publishers
+        return ["no command was heard; check the domain, the topic and --router"]
+    if figures["found_publisher"]:
+        return ["no command was heard: a publisher was found, but no usable message came from it"]
+    return ["no command was heard: no publisher of a command that it hears was found; check the domain, the topic, "
+            "and with --local the peer's discovery"]
 
 
 def summary(figures: dict[str, Any]) -> str:
@@ -156,8 +190,9 @@ def summary(figures: dict[str, Any]) -> str:
              f"{100 * figures['cpu_share']:.0f} % of a core",
              f"late by {figures['late_median_ms']:.2g} ms in the median, {figures['late_99_percent_ms']:.2g} ms at "
              f"99 %, {figures['late_most_ms']:.2g} ms at most; {figures['late_cycles']} cycles by a period or more",
+             *nothing_heard(figures),
              *(f"{end['name'] + ' ' if ends[1:] else ''}at x = {end['x_m']:.4f} m, y = {end['y_m']:.4f} m, heading "
-               f"{end['heading_rad']:.4f} rad" for end in ends[:MOST_ENDS])]
+               f"{end['heading_rad']:.4f} rad (of {figures['frame']})" for end in ends[:MOST_ENDS])]
     if ends[MOST_ENDS:]:
         lines.append(f"and {len(ends) - MOST_ENDS} more robots; --json lists all of them")
     lines += [f"{count} times {event}" for event, count in figures["events"].items()]
