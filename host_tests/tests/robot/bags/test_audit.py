@@ -15,6 +15,7 @@ import pytest
 from bag_support import HALF_TRACK_M, RADIUS_M, scene_of
 from laconic.base.paths import scene_path
 from laconic.cli.main import run
+from laconic.robot.identify.report import interval
 from laconic.robot.replay.rolling import path_of
 from recorded_data import recorded
 
@@ -89,6 +90,31 @@ def test_a_page_and_every_export_hold_the_numbers(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-3
     if compiler := shutil.which("cc"):
         subprocess.run([compiler, "-std=c99", "-Werror", "-fsyntax-only", "-x", "c", str(files[1])], check=True)
+
+
+def test_the_joints_of_a_table_without_names_are_those_of_the_scene(tmp_path, capsys):
+    """And a robot whose wheels only roll ahead is not said to roll to the left."""
+    scene, out = scene_of(tmp_path), tmp_path / "control.yaml"
+    scene.write_text(scene.read_text() + '[base]\njoint_names = ["wheel_left_joint", "wheel_right_joint"]\n')
+    log, mapping = log_of(tmp_path, left=1.02)
+    assert run(["audit", str(log), str(scene), "--map", str(mapping), "--export", str(out)]) == 0
+    text = out.read_text()
+    assert 'left_wheel_names: ["wheel_left_joint"]' in text and 'right_wheel_names: ["wheel_right_joint"]' in text
+    page = capsys.readouterr().out
+    assert "wheels roll ahead, the robot moves" in page and "wheels roll to the left" not in page
+
+
+def test_a_robot_that_rolls_to_the_left_is_told_how_far(tmp_path, capsys):
+    log = tmp_path / "run.csv"
+    assert run(["simulate", "robotino2", "--out", str(log), "--inputs"]) == 0
+    assert run(["audit", str(log), "robotino2"]) == 0
+    assert "wheels roll to the left, the robot moves 1.0000 m" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("value,half", [(0.0333301, 2.1e-8), (0.033, 1e-4), (-1.5, 3e-9), (0.0, 0.1), (2.0, 0.0)])
+def test_both_ends_of_an_interval_show_its_width(value, half):
+    low, high = map(float, interval(value, half).split(" … "))
+    assert high - low == pytest.approx(2.0 * half, rel=0.1)
 
 
 def test_what_cannot_be_exported_or_audited_is_one_line(tmp_path, capsys):

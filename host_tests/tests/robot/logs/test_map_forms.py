@@ -256,6 +256,45 @@ def test_a_fast_counter_is_guessed_with_its_size(bits: int, ticks_per_row: float
     assert f"wrap = {size}\n" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("scene", ["turtlebot3_burger", "mir_like", "robotino2"])
+def test_a_log_of_simulate_is_recognised_and_its_written_map_replays(scene, tmp_path, capsys):
+    log, mapping = tmp_path / "run.csv", tmp_path / "map.toml"
+    assert run(["simulate", scene, "--out", str(log), "--inputs"]) == 0
+    capsys.readouterr()
+    assert run(["logs", str(log), "-o", str(mapping)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "note: the columns are signals of laconic simulate: no map needed by replay, identify and audit" in lines
+    taken = {line.split()[0]: line for line in lines if "_rad_per_s[" in line or "velocity" in line or "hinge" in line}
+    assert {name.partition("[")[0] for name, line in taken.items() if line.endswith("]") and " wheel_speed [" in line
+            } == {"wheel_speed_rad_per_s"}
+    assert run(["replay", str(log), scene, "--map", str(mapping), "--inputs", "wheel-speeds", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-4
+
+
+def test_a_log_of_simulate_without_its_pose_has_no_wrong_wheels(tmp_path, capsys):
+    names = ["time_s", "nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "velocity_body_m_per_s[1]",
+             "velocity_body_m_per_s[2]", "hinge_angle_rad[left]", "hinge_angle_rad[right]",
+             "wheel_speed_rad_per_s[1]", "wheel_speed_rad_per_s[2]"]
+    log = csv(tmp_path / "part.csv", [[0.1 * row, *([0.2 * row] * 9)] for row in range(30)], names)
+    assert run(["logs", str(log), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["map"]
+    assert found["wheel_speed"]["columns"] == ["wheel_speed_rad_per_s[1]", "wheel_speed_rad_per_s[2]"]
+    assert "wheel_angle" not in found
+
+
+def test_a_log_of_a_map_of_the_project_is_read_by_that_map(tmp_path, capsys):
+    names = ["t", *(f"m{wheel}{what}" for what in ("setvel", "pos", "vel", "cur") for wheel in (1, 2, 3)), "dx", "dy",
+             "dang"]
+    head = [";".join(names), ";".join(["ms"] + ["-"] * 15), ";".join(names)]
+    rows = [";".join(map(str, [30 * row, *[row] * 15])) for row in range(30)]
+    log, mapping = tmp_path / "gray.csv", tmp_path / "map.toml"
+    log.write_text("\n".join([*head, *rows]) + "\n")
+    assert run(["logs", str(log), "-o", str(mapping)]) == 0
+    assert "note: the project's map robotino recognises this log: no map needed" in capsys.readouterr().out
+    own, copy = gather_logs([log])[0][0], gather_logs([log], mapping)[0][0]
+    assert np.array_equal(own.pose, copy.pose) and np.array_equal(own.wheel_angle_rad, copy.wheel_angle_rad)
+
+
 def test_an_encoder_log_of_our_own_is_guessed_with_its_wrap(tmp_path, capsys):
     """Of 16 bits, as simulate writes it for a scene with such encoders."""
     rows = motion(400)

@@ -161,3 +161,13 @@ def test_wheels_of_hinged_scenes_may_be_counters_that_begin_again(columns, tmp_p
     assert run(["replay", str(tmp_path / "run.csv"), str(tmp_path / "robot.toml"), "--map", str(tmp_path / "map.toml"),
                 "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-3
+
+
+def test_a_file_of_signals_of_a_robot_with_casters_is_rolled_by_its_wheels(tmp_path, capsys):
+    log = tmp_path / "drive.csv"
+    assert run(["simulate", "mir_like", "--out", str(log), "--inputs"]) == 0
+    capsys.readouterr()
+    assert run(["replay", str(log), "mir_like", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 1e-3
+    assert run(["replay", str(log), "mir_like", "--inputs", "voltages"]) == 2
+    assert "give --inputs wheel-speeds" in capsys.readouterr().err

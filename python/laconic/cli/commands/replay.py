@@ -24,7 +24,8 @@ OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 @click.argument("scene", type=SceneName(hinges=True))
 @click.option("--inputs", type=click.Choice(INPUTS),
               help="The columns of the log that drive the model. Default: voltages if its columns are signals, in one "
-              "file or many; currents if the log has them and the ground no friction; else the wheels' speeds.")
+              "file or many, without casters and trailers; currents if the log has them and the ground no "
+              "friction; else the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. Default: every other run of a folder.")
 @map_option
@@ -73,12 +74,22 @@ def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tu
     if fit_on and inputs not in (None, "currents"):
         raise BadInput(f"--fit: needs measured currents; leave it out beside --inputs {inputs}")
     is_of_signals = len(logs) == 1 and map_path is None and is_signal_log(logs[0])
+    if is_of_signals and inputs is None and not fit_on and _rolls_on_free_hinges(scene):
+        inputs = "wheel-speeds"
     if is_of_signals and inputs in (None, "voltages"):
         if fit_on:
             raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
                            "its --map")
         return _by_signals(logs[0], scene)
     return _by_map(logs, scene, inputs, fit_on, map_path)
+
+
+def _rolls_on_free_hinges(scene: str) -> bool:
+    """Whether only casters and trailers turn, so that the recorded wheels alone give the path."""
+    from laconic.scene import read_scene
+
+    hinges = read_scene(scene).hinges
+    return bool(hinges) and all(hinge.kind == "free" for hinge in hinges)
 
 
 def _by_signals(log: Path, scene: str) -> Found:
@@ -88,8 +99,9 @@ def _by_signals(log: Path, scene: str) -> Found:
 
     given = read_scene(scene)
     if given.has_hinges:
-        raise BadInput(f"{given.path}: a file of signals does not drive vehicles with hinges yet; give a --map with "
-                       "[steering_angle] and [wheel_angle]")
+        remedy = "give --inputs wheel-speeds" if _rolls_on_free_hinges(scene) else \
+            "give a --map with [steering_angle] and [wheel_angle]"
+        raise BadInput(f"{given.path}: a file of signals does not drive vehicles with hinges yet; {remedy}")
     found = replay_signals(given, read_signal_log(log))
     return report.as_text(found), report.as_numbers(found), partial(report.draw, found)
 

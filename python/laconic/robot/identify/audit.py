@@ -33,7 +33,8 @@ WINDOW_S, POINTS = 0.4, 600   # of the motions that are compared, and how many o
 WORTH = 0.05                  # of the difference in motion: a lag that takes away less is noise
 LEAST_MOVED = 0.02            # of the largest direction: in others the runs do not tell a gain
 STEPS = 3                     # of the progress bar
-DIRECTIONS = ("ahead", "to the left", "turn")
+SIDEWAYS = "to the left"
+DIRECTIONS = ("ahead", SIDEWAYS, "turn")
 RADIUS, DISTANCE, TRACKER, LAG = "radius of the wheels", "distance of the wheels", "place of the tracker", "time lag"
 FREE = {RADIUS: ("radius",), DISTANCE: ("distance",), TRACKER: ("place", "heading")}
 LEFT = "left: slip, noise of the pose, what the model lacks"
@@ -232,10 +233,27 @@ def without_lag(log: Log, lag_s: float) -> Log:
 OF_ROWS = ("time_s", "pose", "pose_rows")     # which are made anew
 
 
+def _roll_sideways(paths: Sequence[np.ndarray]) -> bool:
+    """Whether the wheels roll to the left at all, from row to row, apart from what turning does to a point ahead of
+    the axle. Stretches do not show this, because a curve ends to the left of its beginning."""
+    steps = []
+    for path in paths:
+        step, heading = np.diff(path, axis=0), 0.5 * (path[1:, 2] + path[:-1, 2])
+        cos, sin = np.cos(heading), np.sin(heading)
+        steps.append(np.column_stack([cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0],
+                                      step[:, 2]]))
+    ahead, left, turn = np.vstack(steps).T
+    whole = float(turn @ turn)
+    rest = left - turn * (float(left @ turn) / whole if whole > 0.0 else 0.0)
+    return bool(np.linalg.norm(rest) > LEAST_MOVED * np.hypot(np.linalg.norm(ahead), np.linalg.norm(left)))
+
+
 def leftovers(runs: Sequence[tuple[Log, np.ndarray]]) -> tuple[dict[str, float], dict[str, float], np.ndarray]:
     """(true over rolled motion in each direction that the runs tell, standard errors of that, spread of the stretches'
     errors for a metre) of runs with their rolled paths."""
     told, true, errors = [], [], []
+    is_sideways = _roll_sideways([path for _, path in runs])
+    names = [name for name in DIRECTIONS if is_sideways or name != SIDEWAYS]
     for log, path in runs:
         run = run_of(log, by_wheels=False)
         off = stretch_errors(run, path)
@@ -248,7 +266,8 @@ def leftovers(runs: Sequence[tuple[Log, np.ndarray]]) -> tuple[dict[str, float],
     rolled, wanted = np.vstack(told), np.vstack(true)
     gains, gain_errors = {}, {}
     size = np.sqrt((rolled**2).mean(axis=0))
-    for index, name in enumerate(DIRECTIONS):
+    for name in names:
+        index = DIRECTIONS.index(name)
         if size[index] > LEAST_MOVED * size[:2].max() and size[index] > 0.0:
             whole = float((rolled[:, index] ** 2).sum())
             gains[name] = float((rolled[:, index] * wanted[:, index]).sum() / whole)

@@ -19,7 +19,7 @@ from laconic.robot.identify.steered_audit import controllers_text as steered_tex
 from laconic.robot.identify.steered_audit import own_of, place_of_wheel
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.rolling import wheel_radii
-from laconic.scene.base import usual_joints
+from laconic.scene.base import joint_names
 
 WORTH_A_LINE = 0.002    # of a radius
 SLIPS, DEVIATIONS = 0.02, 2.0   # of true over rolled motion: what is beyond both it and so many standard errors
@@ -40,9 +40,14 @@ def export(found: Audit, path: Path) -> str:
 
 
 def _joints(found: Audit) -> list[str]:
-    names = found.logs[0].column_names
-    count = len(found.scene.vehicle["wheel"])
-    return list(names) if len(names) == count else usual_joints(count)
+    """Of the wheels: as the log names them, else as the scene does."""
+    names, count = found.logs[0].column_names, found.scene.wheel_count
+    return list(names) if len(names) == count else joint_names(found.scene.base, count, [])[:count]
+
+
+def _hinge_joints(found: Audit) -> list[str]:
+    names = [hinge.name for hinge in found.scene.hinges]
+    return joint_names(found.scene.base, found.scene.wheel_count, names)[found.scene.wheel_count:]
 
 
 def _is_differential(wheels: list[dict[str, Any]]) -> bool:
@@ -56,8 +61,7 @@ def controllers_text(found: Audit) -> str:
     """Parameters of diff_drive_controller, mecanum_drive_controller, or those of steered vehicles."""
     wheels = found.scene.vehicle["wheel"]
     if found.scene.has_hinges:
-        hinges = [f"{hinge.name}_hinge_joint" for hinge in found.scene.hinges]
-        lines = steered_text(found.scene, found.fitted, own_of(found.vehicle), _joints(found), hinges)
+        lines = steered_text(found.scene, found.fitted, own_of(found.vehicle), _joints(found), _hinge_joints(found))
         return "\n".join([*_head(found, "#"), *lines, ""])
     if _is_differential(wheels):
         return _differential(found)

@@ -12,6 +12,8 @@ from laconic.robot.logs.log import counted
 from laconic.robot.replay.measures import RunErrors, grand_mean
 from laconic.robot.replay.rolled_paths import error_table
 
+MOST_DIGITS = 12      # of the ends of an interval
+
 
 def as_text(study: Study) -> str:
     """A report in Markdown."""
@@ -25,16 +27,23 @@ def as_text(study: Study) -> str:
     return "\n".join(lines)
 
 
+def interval(value: float, half: float) -> str:
+    """Both ends, with at least two digits that show where they differ."""
+    size = max(abs(value - half), abs(value + half))
+    digits = 6 if not 0.0 < half < size else int(np.clip(np.ceil(np.log10(size / half)) + 2, 6, MOST_DIGITS))
+    return f"{value - half:.{digits}g} … {value + half:.{digits}g}"
+
+
 def _rows(study: Study) -> list[str]:
     found = study.found
-    return [f"| {p.name} [{p.unit or '–'}] | {p.nominal:.6g} | {value:.6g} | {value - half:.6g} … {value + half:.6g} | "
+    return [f"| {p.name} [{p.unit or '–'}] | {p.nominal:.6g} | {value:.6g} | {interval(value, half)} | "
             f"{np.hypot(p.prior_sd, p.shared_sd):.2g} |"
             for p, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True)]
 
 
 def _controller_rows(study: Study) -> list[str]:
     return [] if study.controller is None else [
-        f"| {name} | – | {value:.6g} | {value - half:.6g} … {value + half:.6g} | – |"
+        f"| {name} | – | {value:.6g} | {interval(value, half)} | – |"
         for name, value, half in study.controller.rows()]
 
 

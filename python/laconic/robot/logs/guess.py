@@ -37,6 +37,7 @@ OF_WHEELS = {"wheel", "wheels", "motor", "m", "drive", "axle"} | TICKS | SPEEDS 
 OF_QUATERNIONS = {"orientation", "quaternion", "quat", "q", "rotation", "rot"}
 NOT_A_HEADING = {"wheel", "wheels", "motor", "drive", "axle", "gyro", "rate", "steering", "steer", "delta", "joint"} | \
     TICKS | SPEEDS
+OF_BODIES = {"nu", "zeta", "body", "hinge", "hinges"}   # velocities and angles that are not of wheels
 STEERED = {"steer", "steering", "steered", "delta"}
 
 
@@ -338,7 +339,7 @@ def _quantity(stem: Sequence[str], values: Sequence[np.ndarray]) -> tuple[str, s
     """(quantity, unit) of a group of columns; None where it is none."""
     words = set(stem)
     text = " ".join(stem)
-    if words & STEERED or words & {"covariance", "orientation", "acc", "accel", "mag", "range", "ranges"}:
+    if words & (STEERED | OF_BODIES) or words & {"covariance", "orientation", "acc", "accel", "mag", "range", "ranges"}:
         return None
     if words & {"current", "currents", "cur", "amps", "ampere", "ma"}:
         return "current", "mA" if "ma" in words else "A"

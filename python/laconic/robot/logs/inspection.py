@@ -27,7 +27,7 @@ from laconic.robot.logs.bag_source import POSES, own_name, read_mat
 from laconic.robot.logs.column_map import ColumnMap, map_of
 from laconic.robot.logs.for_vehicle import corner_of, places_by_name, words_of
 from laconic.robot.logs.guess import STEERED, TRUE, UNTRUE, Guess, guess_table, toml_text
-from laconic.robot.logs.recognise import OF_CAN
+from laconic.robot.logs.recognise import OF_CAN, known_guess
 from laconic.robot.logs.text_table import number_of, rows_of, text_of
 from laconic.scene.table import Table
 
@@ -319,6 +319,8 @@ def _of_text(path: Path) -> Inspection:
     titles = [names[index] if index < len(names) and names[index] and names.count(names[index]) == 1 else str(index + 1)
               for index in range(width)]
     columns, texts = _columns(rows[head:], titles, decimal)
+    if (known := known_guess(path, titles)) is not None:
+        return Inspection(path, _kind(len(rows) - head, separator), COLUMNS, _rows(columns, texts, known), known)
     labels = _with_units(titles, rows[:head], width)
     guess = guess_table({labels[name]: values for name, values in columns.items()}, texts)
     plain = {label: name for name, label in labels.items()}
@@ -332,8 +334,11 @@ def _of_text(path: Path) -> Inspection:
     if len(words) <= 20 and all(re.fullmatch(r"[A-Za-z_]\w*", word) for word in words) and len(words) > 1:
         guess.notes.append(f"the first column holds words ({', '.join(list(words)[:5])}): keyword_column = 1, and rows "
                            "under each quantity says whose lines are its own")
-    return Inspection(path, f"text, {len(rows) - head} lines, separated by {separator!r}", COLUMNS,
-                      _rows(columns, texts, guess), guess)
+    return Inspection(path, _kind(len(rows) - head, separator), COLUMNS, _rows(columns, texts, guess), guess)
+
+
+def _kind(count: int, separator: str) -> str:
+    return f"text, {count} lines, separated by {separator!r}"
 
 
 def _with_units(titles: Sequence[str], head: Sequence[Sequence[str]], width: int) -> dict[str, str]:

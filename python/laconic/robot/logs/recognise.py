@@ -11,13 +11,18 @@ from laconic.errors import BadInput
 from laconic.robot.bags.messages import ENDINGS as OF_BAG
 from laconic.robot.bags.messages import OF_ROSBAG2, is_bag
 from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
+from laconic.robot.logs.guess import Guess
 from laconic.robot.logs.log import Log
 from laconic.robot.logs.read import read_log
+from laconic.robot.logs.sources import numbered
 from laconic.robot.logs.text_table import text_of
+from laconic.scene.table import read_map_toml
 
 ENDINGS = (".csv", ".csv.gz", ".txt", ".blf", ".asc")
 OF_CAN = (*ENDINGS[3:], ".log", ".trc", ".mf4", ".asc.gz", ".blf.gz", ".log.gz", ".trc.gz")
 OF_TEXT = ENDINGS[:3]
+OF_SIGNALS = "laconic"      # the map of what `laconic simulate` writes
+PARTS = (" x", " y", " heading")
 OF_FORMAT = {"can": OF_CAN, "text": OF_TEXT, "bag": OF_BAG, "mat": (".mat",)}
 """The endings that a map of each format looks for in a folder."""
 
@@ -98,6 +103,33 @@ def _names(path: Path, columns: ColumnMap) -> list[str]:
     except BadInput:
         return []
     return [name.strip().strip('"') for line in lines for name in line.split(columns.separator)]
+
+
+def known_guess(path: Path, names: Sequence[str]) -> Guess | None:
+    """What a map of the project says about a text log; None if no such map finds wheels in it.
+    `names`: of its columns."""
+    known = map_for(path, [each for each in project_maps() if each.format == "text"], is_given=False)
+    if known is None:
+        return None
+    what = "the columns are signals of laconic simulate" if known.path.stem == OF_SIGNALS else \
+        f"the project's map {known.path.stem} recognises this log"
+    found = Guess(notes=[f"{what}: no map needed by replay, identify and audit"])
+    tables = read_map_toml(known.path).plain()
+    found.entries = {key: value for key, value in tables.items() if key not in ("name", "recognise")}
+    for key, quantity in known.quantities.items():
+        columns = range(quantity.first, len(names) + 1) if quantity.first else numbered(quantity, names)
+        labels = [each if isinstance(each, str) else names[each - 1] for each in columns
+                  if isinstance(each, str) or each <= len(names)]
+        if quantity.is_optional and not (labels and set(labels) <= set(names)):
+            del found.entries[key]
+            continue
+        if "#" in str(tables[key].get("columns", "")):
+            found.entries[key] = {"columns": labels}
+        units = quantity.units if len(quantity.units) == len(labels) else quantity.units[:1] * len(labels)
+        parts = PARTS if key == "pose" and len(labels) == len(PARTS) else [""] * len(labels)
+        found.meaning |= {label: f"{key}{part} [{unit}]"
+                          for label, part, unit in zip(labels, parts, units, strict=True)}
+    return found if {"wheel_angle", "wheel_speed"} & set(found.entries) else None
 
 
 def unknown(path: Path, maps: Sequence[ColumnMap]) -> BadInput:
