@@ -249,6 +249,13 @@ class Pigeon:
         self._sim.set_angular_velocity_z(self._sign * math.degrees(reading.rate_rad_per_s))
 
 
+def identity(given: Any) -> object:
+    """The same for all wheels that share a device; a second writer would look like a reset by the program."""
+    if isinstance(given, Device):
+        return given.kind, given.name, given.value
+    return id(given[1] if isinstance(given, tuple) and len(given) == 2 else given)
+
+
 def port_of(part: str, given: Any, counts: float, gearing: float | None) -> Any:
     """The device that `[frc]` names, or that the robot program has as an object; (-1, object): it turns backwards."""
     if isinstance(given, Device):
@@ -353,6 +360,7 @@ class Engine:
         wheels = self.drivetrain.wheel_count
         counts = {"drive_encoder": table.drive_counts, "steering_encoder": table.steering_counts}
         self._ports: dict[str, list[Any]] = {}
+        shown_by: dict[object, tuple[str, int, Any]] = {}  # one for each device, however many wheels name it: the last
         for part in PARTS:
             given = parts.get(part) or ()
             many = given if isinstance(given, Sequence) and not isinstance(given, str) else (given,)
@@ -360,6 +368,10 @@ class Engine:
             self._check_count(part, many)
             self._ports[part] = [port_of(part, each, counts.get(part, 0.0), of_part[at] if at < len(of_part) else None)
                                  for at, each in enumerate(many)]
+            shown_by |= {identity(each): (part, at, port) for at, (each, port) in
+                         enumerate(zip(many, self._ports[part], strict=True))}
+        self._shown = {part: [(at, port) for of_part, at, port in shown_by.values() if of_part == part]
+                       for part in PARTS}
         self._field = getattr(physics_controller, "field", None)
         self._outputs: tuple[list[float], list[float]] = ([0.0] * wheels, [0.0] * self.drivetrain.steered_count)
         robot.physics = self
@@ -410,10 +422,10 @@ class Engine:
                 ("drive", 0, motion.wheel_angle_rad, motion.wheel_speed_rad_per_s),
                 ("steering", wheels, motion.steering_angle_rad, motion.steering_rate_rad_per_s)):
             for name in (part, f"{part}_encoder"):
-                for at, port in enumerate(self._ports[name]):
+                for at, port in self._shown[name]:
                     port.show(Reading(angles[at], rates[at], seconds, battery.voltage_V,
                                       battery.supply_current_A[first + at], battery.motor_current_A[first + at]))
-        for port in self._ports["gyro"]:
+        for _, port in self._shown["gyro"]:
             port.show(Reading(motion.heading_rad, motion.yaw_rate_rad_per_s, seconds, battery.voltage_V))
         self._show_power()
         if self._field is not None:

@@ -6,11 +6,13 @@ import asyncio
 import json
 import math
 import re
+import sys
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -136,6 +138,66 @@ def test_a_scene_without_outputs_is_refused_by_the_key_that_misses(tmp_path: Pat
     path.write_text(re.sub(r"(?m)^steering = .*$", "", new_scene(SWERVE).text), encoding="utf-8")
     with pytest.raises(BadInput, match="frc.steering: is missing; name the output"):
         Bridge(Drivetrain(path))
+
+
+# ---- a device of several wheels
+
+
+class FakeEncoder:
+    """WPILib's EncoderSim without WPILib."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def getInitialized(self) -> bool:  # noqa: N802
+        return True
+
+    def getCount(self) -> int:  # noqa: N802
+        return self.count
+
+    def setCount(self, count: int) -> None:  # noqa: N802
+        self.count = count
+
+    def setPeriod(self, seconds: float) -> None:  # noqa: N802
+        assert seconds
+
+
+def faked_wpilib(monkeypatch: pytest.MonkeyPatch) -> dict[int, FakeEncoder]:
+    """WPILib's simulation where a differential drive's two outputs go ahead; its encoders by channel."""
+    made: dict[int, FakeEncoder] = {}
+    value = SimpleNamespace(get=lambda: 0.0, set=lambda _: None)
+    simulation = ModuleType("wpilib.simulation")
+    vars(simulation).update(
+        EncoderSim=SimpleNamespace(createForChannel=lambda channel: made.setdefault(channel, FakeEncoder())),
+        PWMSim=lambda channel: SimpleNamespace(getInitialized=lambda: True, getSpeed=lambda: -0.5 if channel else 0.5),
+        SimDeviceSim=lambda _: SimpleNamespace(getDouble=lambda _: value),
+        DriverStationSim=SimpleNamespace(getEnabled=lambda: True),
+        RoboRioSim=SimpleNamespace(setVInVoltage=lambda _: None),
+        PowerDistributionSim=lambda _: SimpleNamespace(getInitialized=lambda: False))
+    package = ModuleType("wpilib")
+    vars(package)["simulation"] = simulation
+    monkeypatch.setitem(sys.modules, "wpilib", package)
+    monkeypatch.setitem(sys.modules, "wpilib.simulation", simulation)
+    return made
+
+
+@pytest.mark.parametrize("wheels", [2, 4, 6])
+def test_an_encoder_that_wheels_share_counts_the_turns_of_one(wheels: int, tmp_path: Path,
+                                                              monkeypatch: pytest.MonkeyPatch) -> None:
+    made = faked_wpilib(monkeypatch)
+    robot = Robot("differential", 52.0, (0.85, 0.75), 0.56, 0.5, motor="CIM", motors=2, gearing=10.71,
+                  wheel_radius_m=0.0762, wheels=wheels, friction=1.1)
+    engine = laconic.frc.engine(scene_of(tmp_path, robot))(None, SimpleNamespace())
+    for _ in range(50):
+        engine.update_sim(0.0, 0.02)
+    turns = [angle / (2.0 * math.pi) for angle in engine.drivetrain.motion().wheel_angle_rad]
+    counts = engine.drivetrain.table.drive_counts
+    assert min(turns) > 1.0 and len(made) == 2
+    for each in made.values():           # wheels of one side slip, so that their angles differ
+        assert min(abs(each.count / counts - turn) for turn in turns) < 2.0 / counts
+    made[0].count = 0                    # a reset by the program
+    engine.update_sim(0.0, 0.02)
+    assert 0 < made[0].count < 0.2 * made[2].count
 
 
 # ---- the drivetrain
