@@ -378,6 +378,12 @@ def test_a_refused_step_ends_the_run_with_a_failed_verdict(tmp_path: Path) -> No
     assert "the command asks for" in failed[0].detail and "\n" not in failed[0].detail
 
 
+def test_a_run_that_no_autopilot_joined_does_not_pass() -> None:
+    judgement = play_ardupilot(read_scene("turtlebot3_burger"), port=0, duration_s=0.01, say=lambda line: None)
+    (verdict,) = judgement.verdicts
+    assert not verdict.passed and "start the autopilot" in verdict.detail and judgement.exit_status == 1
+
+
 def test_ctrl_c_ends_the_command_with_status_0_and_its_figures() -> None:
     command = [sys.executable, "-m", "laconic", "play", "turtlebot3_burger", "--ardupilot", "--listen", "0", "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

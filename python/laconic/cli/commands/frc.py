@@ -11,7 +11,7 @@ import click
 from laconic.base.outputs import is_stdout, write_text
 from laconic.cli.options import OutputFile, SceneName, check_step, goes_with, json_flag
 from laconic.errors import BadInput
-from laconic.frc.new import KINDS, MODULES, MOTORS, Robot, box, length, mass, new_scene
+from laconic.frc.new import KINDS, MODULES, MOTORS, Robot, box, length, mass, new_scene, quantity
 from laconic.frc.websocket import MODES, URL, Bridge, figures_of
 
 OF_NEW = ("--out", "--mass", "--bumpers", "--track", "--wheelbase", "--motor", "--motors", "--gearing",
@@ -49,7 +49,7 @@ OF_RUN = ("--url", "--enable", "--duration", "--step", "--log")
 @click.option("--friction", type=float, metavar="MU", help="Wheels may slip on ground with this friction.  [default: "
                                                            "swerve 1.1, others none]")
 @click.option("--ideal", "is_ideal", is_flag=True, help="Swerve on ideal ground, without slip.")
-@click.option("--current-limit", type=float, metavar="A", help="Largest current of one driving motor.")
+@click.option("--current-limit", metavar="CURRENT", help="Largest current of one driving motor, as 60 or 60A.")
 @click.option("--name", help="Of the robot.")
 @json_flag("Machine-readable summary.")
 def command(scene_name: str | None, kind: str | None, out: Path | None, json_wanted: bool, **given: Any) -> None:
@@ -85,11 +85,13 @@ def make(kind: str, out: Path | None, json_wanted: bool, given: dict[str, Any]) 
     def optional(name: str) -> float | None:
         return None if given[name] is None else length(f"--{name.replace('_', '-')}", given[name])
 
+    limit = given["current_limit"]
+    current = None if limit is None else quantity("--current-limit", limit, {"": 1.0, "a": 1.0}, "60 or 60A")
     found = new_scene(Robot(
         kind, mass("--mass", given["mass"]), box("--bumpers", given["bumpers"]), length("--track", given["track"]),
         optional("wheelbase"), given["motor"], given["motors"], given["gearing"], optional("wheel_radius"),
         given["module"], given["steering_motor"], given["steering_gearing"], given["wheels"], given["friction"],
-        given["is_ideal"], given["current_limit"], given["name"]))
+        given["is_ideal"], current, given["name"]))
     write_text(out, found.text)
     if json_wanted:
         click.echo(json.dumps({"assumptions": found.assumed}, indent=1, ensure_ascii=False))

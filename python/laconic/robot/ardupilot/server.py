@@ -276,7 +276,9 @@ def play_ardupilot(scene: Scene, *, port: int = USUAL_PORT, duration_s: float | 
 
 def judged(judgement: Judgement, player: Player, seconds: float) -> Judgement:
     """Verdict, figures and notes of a run."""
-    judgement.add(Verdict("autopilot", True, f"{player.frames} frames taken, {player.repeated} answered again"))
+    heard = f"{player.frames} frames taken, {player.repeated} answered again"
+    judgement.add(Verdict("autopilot", bool(player.frames), heard if player.frames else
+                          "no frame was ever taken; start the autopilot with the port of the line \"listens on\""))
     seen = player.seen
     judgement.figures |= {
         "seconds": seconds, "frames": player.frames, "repeated_frames": player.repeated, "restarts": player.restarts,
@@ -284,7 +286,5 @@ def judged(judgement: Judgement, player: Player, seconds: float) -> Judgement:
         "end_y_m": seen.place.imag, "end_heading_rad": seen.heading_rad}
     dropped: Sequence[tuple[str, int]] = sorted(player.said.items())
     judgement.notes += [f"{kind}: {count} times" for kind, count in dropped if count > 1]
-    if not player.frames:
-        judgement.notes.append("no autopilot was ever heard")
     judgement.notes.append(UNTESTED)
     return judgement
