@@ -200,6 +200,7 @@ def test_its_program_in_cpp_prints_what_the_readme_states(tmp_path):
     assert printed == re.findall(r"```text\n(.*?)```", README, re.DOTALL)[0]
 
 
+OF_PLANT = 5  # rows of the page that a plant needs; those behind them are of hinges
 LOOP = """#include <laconic/laconic.h>
 extern float battery_V, duty_left, duty_right;
 void stop(void);
@@ -219,12 +220,14 @@ def test_its_firmware_loop_compiles_and_a_plant_has_the_bytes_that_it_states(tmp
     compiled("loop.c", LOOP + re.findall(r"```c\n(.*?)```", section, re.DOTALL)[0], "-DLACONIC_SINGLE")
     options: list[str] = []
     rows = re.findall(r"^\| (.*) \| ([\d,]+) \|$", section.split("\n## ")[0], re.MULTILINE)
-    for build, size in rows:
+    hinged = " + ".join(f"sizeof(laconic_articulated_{part})" for part in ("model", "integrator", "state", "input"))
+    for at, (build, size) in enumerate(rows):
+        held = "sizeof(laconic_plant)" if at < OF_PLANT else hinged
         options = [*(options if "…" in build else ["-DLACONIC_SINGLE"] if "float" in build else []),
                    *re.findall(r"`(-D\S+)`", build)]
-        compiled("size.c", "#include <laconic/laconic.h>\n"
-                 f"typedef char size[sizeof(laconic_plant) == {size.replace(',', '')} ? 1 : -1];\n", *options)
-    assert len(rows) == 5
+        compiled("size.c", "#include <laconic/laconic.h>\n#include <laconic/articulated.h>\n"
+                 f"typedef char size[{held} == {size.replace(',', '')} ? 1 : -1];\n", *options)
+    assert len(rows) == OF_PLANT + 4
 
 
 @pytest.mark.nightly
