@@ -50,10 +50,10 @@ class ArticulatedBatch(OwnMemory):
         core = self.core = core_of(self.vehicles, ArticulatedVehicle, "Batch")
         self._kind_of = kinds_of_lanes(len(self.vehicles), lanes, kind_of)
         self._slips = _slip(self.vehicles)
-        self._struct = "laconic_tree" if self._slips else "laconic_articulated"
+        self._form = "tree" if self._slips else "articulated"
         self.lane_count, self.step_s = len(self._kind_of), number("step_s", step_s)
         self.method, rest = method, self._prepared(method)
-        self._states = zeros(core, f"{self._struct}_state", self.lane_count)
+        self._states = zeros(core, f"laconic_{self._form}_state", self.lane_count)
         self._inputs = np.zeros((self.lane_count, len(self.vehicles[0].input_row())), core.dtype)
         self._motions = zeros(core, "laconic_articulated_motion", self.lane_count)
         self._why = core.ffi.new("laconic_refusal[]", self.lane_count)
@@ -81,8 +81,8 @@ class ArticulatedBatch(OwnMemory):
 
     def _place(self) -> None:
         core, ffi = self.core, self.core.ffi
-        self._items = items_of(core, f"{self._struct}_state", self._states)
-        given = ffi.from_buffer(f"{self._struct}_input[]", self._inputs)
+        self._items = items_of(core, f"laconic_{self._form}_state", self._states)
+        given = ffi.from_buffer(f"laconic_{self._form}_input[]", self._inputs)
         self._pointers = (ffi.from_buffer("int32_t[]", self._kind_of), given,
                           ffi.from_buffer("int32_t[]", self.status), ffi.from_buffer("uint64_t[]", self.missed))
         kind_of, inputs, status, missed = self._pointers
@@ -130,11 +130,11 @@ class ArticulatedBatch(OwnMemory):
 
     def load(self, lane: int, state: Any) -> None:
         """Gives a lane a state such as `ArticulatedPlant.save()` has, of a vehicle like the lane's."""
-        self._items[self._lane(lane)] = c_object(self.core, f"{self._struct[8:]}_state", state)[0]
+        self._items[self._lane(lane)] = c_object(self.core, f"{self._form}_state", state)[0]
 
     def state(self, lane: int) -> Any:
         """A copy of a lane's state, all of it: `ArticulatedPlant.restore` takes it."""
-        return self.core.ffi.new(f"{self._struct}_state *", self._items[self._lane(lane)])
+        return self.core.ffi.new(f"laconic_{self._form}_state *", self._items[self._lane(lane)])
 
     def run(self, steps: int = 1, threads: int = 1) -> int:
         """Steps of all lanes with the inputs held, on so many threads; the bits do not depend on their number.

@@ -133,16 +133,13 @@ class Bridge:
             speed = rate * counts / TURN
             return [("Encoder", number, {">count": math.floor(angle * counts / TURN),
                                          ">period": 1.0 / speed if speed else NEVER_S})] if number is not None else []
-        share = (angle / TURN) % 1.0
+        place, share = place_in_messages(device), (angle / TURN) % 1.0
         if device.kind == "AnalogInput":
-            return [("AI", device.name, {">voltage": FULL_SCALE_V * share})]
-        kind, name, values = {
-            "DutyCycleEncoder": ("DutyCycle", f"DutyCycleEncoder[{device.name}]", {"Position": share}),
-            "AnalogEncoder": ("SimDevice", f"AnalogEncoder[{device.name}]", {"Position": share}),
-            "CANEncoder": ("CANEncoder", device.name, {"position": angle / TURN, "velocity": rate / TURN}),
-            "CANDutyCycle": ("CANDutyCycle", device.name, {"position": share}),
-            "SimDevice": ("SimDevice", device.name, {device.value: angle / TURN})}[device.kind]
-        return [self._spelled(kind, name, values)]
+            return [(*place, {">voltage": FULL_SCALE_V * share})]
+        values = {"DutyCycleEncoder": {"Position": share}, "AnalogEncoder": {"Position": share},
+                  "CANEncoder": {"position": angle / TURN, "velocity": rate / TURN},
+                  "CANDutyCycle": {"position": share}, "SimDevice": {device.value: angle / TURN}}[device.kind]
+        return [self._spelled(*place, values)]
 
     def _spelled(self, kind: str, device: str, values: Mapping[str, float]) -> Message:
         """Values with the directions that the program gave them, > where it did not send them yet."""
@@ -278,11 +275,12 @@ def gyro_values(device: Device, motion: Motion) -> tuple[str, str, dict[str, flo
     """A gyro of one axis counts clockwise; one on CAN about z, counter-clockwise."""
     angle = device.sign * math.degrees(motion.heading_rad)
     rate = device.sign * math.degrees(motion.yaw_rate_rad_per_s)
+    kind, name = place_in_messages(device)
     if device.kind == "CANGyro":
-        return "CANGyro", device.name, {"angle_z": angle, "rate_z": rate}
+        return kind, name, {"angle_z": angle, "rate_z": rate}
     if device.kind == "SimDevice":
-        return "SimDevice", device.name, {device.value: -angle}
-    return "Gyro", f"{device.kind}[{device.name}]", {"angle_x": -angle, "rate_x": -rate}
+        return kind, name, {device.value: -angle}
+    return kind, name, {"angle_x": -angle, "rate_x": -rate}
 
 
 def checked(url: str) -> str:

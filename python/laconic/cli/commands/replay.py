@@ -16,7 +16,6 @@ from laconic.cli.options_of_logs import map_option
 from laconic.errors import BadInput
 
 INPUTS = ("wheel-speeds", "currents", "voltages", "set-speeds")
-OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 
 
 @click.command("replay")
@@ -67,52 +66,44 @@ Found = tuple[str, dict[str, Any], Callable[[Path], list[Path]]]
 
 def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tuple[Path, ...],
               map_path: Path | None) -> Found:
+    from laconic.robot.logs.for_vehicle import is_free
     from laconic.robot.replay.signals import is_signal_log
+    from laconic.scene import read_scene
 
     if (first := next((log for log in logs if log.suffix == ".toml"), None)) and not scene.endswith(".toml"):
         raise BadInput(f"{first}: is a scene, which comes last: laconic replay LOG... SCENE")
     if fit_on and inputs not in (None, "currents"):
         raise BadInput(f"--fit: needs measured currents; leave it out beside --inputs {inputs}")
     is_of_signals = len(logs) == 1 and map_path is None and is_signal_log(logs[0])
-    if is_of_signals and inputs is None and not fit_on and _rolls_on_free_hinges(scene):
-        inputs = "wheel-speeds"
+    if is_of_signals and fit_on and inputs is None:
+        raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
+                       "its --map")
+    given = read_scene(scene)
+    if is_of_signals and inputs is None and is_free(given):
+        inputs = "wheel-speeds"  # the recorded wheels alone give the path
     if is_of_signals and inputs in (None, "voltages"):
-        if fit_on:
-            raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
-                           "its --map")
-        return _by_signals(logs[0], scene)
-    return _by_map(logs, scene, inputs, fit_on, map_path)
+        return _by_signals(logs[0], given)
+    return _by_map(logs, given, inputs, fit_on, map_path)
 
 
-def _rolls_on_free_hinges(scene: str) -> bool:
-    """Whether only casters and trailers turn, so that the recorded wheels alone give the path."""
-    from laconic.scene import read_scene
-
-    hinges = read_scene(scene).hinges
-    return bool(hinges) and all(hinge.kind == "free" for hinge in hinges)
-
-
-def _by_signals(log: Path, scene: str) -> Found:
+def _by_signals(log: Path, given: Any) -> Found:
+    from laconic.robot.logs.for_vehicle import is_free
     from laconic.robot.replay import signals_report as report
     from laconic.robot.replay.signals import read_signal_log, replay_signals
-    from laconic.scene import read_scene
 
-    given = read_scene(scene)
     if given.has_hinges:
-        remedy = "give --inputs wheel-speeds" if _rolls_on_free_hinges(scene) else \
+        remedy = "give --inputs wheel-speeds" if is_free(given) else \
             "give a --map with [steering_angle] and [wheel_angle]"
         raise BadInput(f"{given.path}: a file of signals does not drive vehicles with hinges yet; {remedy}")
     found = replay_signals(given, read_signal_log(log))
     return report.as_text(found), report.as_numbers(found), partial(report.draw, found)
 
 
-def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tuple[Path, ...],
+def _by_map(paths: tuple[Path, ...], given: Any, inputs: str | None, fit_on: tuple[Path, ...],
             map_path: Path | None) -> Found:
     from laconic.robot.replay.runs import gather
-    from laconic.scene import read_scene
     from laconic.scene.ground import slips
 
-    given = read_scene(scene)
     logs, names, skipped = gather(paths, fit_on, map_path)
     if inputs is None and not fit_on and _are_signals_with_voltages(logs):
         inputs = "voltages"
@@ -135,6 +126,8 @@ def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tup
 
 def _are_signals_with_voltages(logs: list[Any]) -> bool:
     """Whether the inputs stand in the logs, so that a folder is driven by them as each of its files alone is."""
+    from laconic.robot.logs.recognise import OF_SIGNALS
+
     return all(log.map_name == OF_SIGNALS and log.voltage_V is not None for log in logs)
 
 

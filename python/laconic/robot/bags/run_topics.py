@@ -14,9 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from laconic.base.outputs import claims, make_folder
-from laconic.core.articulated import CARRIAGE
 from laconic.errors import BadInput, reason_of
 from laconic.robot.bags.messages import store
+from laconic.robot.logs.for_vehicle import carriage_alone, wheels_on_carriage
 from laconic.robot.replay.rolling import Rolling, centre_of_mass, path_of, rolling_of
 from laconic.ros2 import FRAMES
 from laconic.scene import Scene
@@ -258,10 +258,10 @@ class RunTopics:
         self.scene, self.bag = scene, bag
         self.types = store().types
         self.joints = joint_names(scene.base, scene.wheel_count, [hinge.name for hinge in scene.hinges])
-        core, carriage = scene.core(), carriage_of(scene)
+        core, carriage = scene.core(), carriage_alone(scene.vehicle)
         self._centre = centre_of_mass(core, core.vehicle(carriage))
         self._rolling = _rolling(scene, carriage)
-        self._on_carriage = [at for at, wheel in enumerate(scene.vehicle["wheel"]) if is_of_carriage(wheel)]
+        self._on_carriage = wheels_on_carriage(scene.vehicle)
         self._has_begun = False
         self._angles: np.ndarray | None = None
         self._odom: np.ndarray | None = None
@@ -375,18 +375,6 @@ class RunTopics:
         self.bag.write("/imu", IMU_TYPE, stamp_ns, self.types[IMU_TYPE](
             self._header(stamp, IMU), self._quaternion(0.0), unknown, vector(0.0, 0.0, float(rate)), known,
             vector(float(ahead or 0.0), float(left or 0.0), 0.0), unknown if ahead is None else known))
-
-
-def carriage_of(scene: Scene) -> dict[str, Any]:
-    """The vehicle, of one with hinges body 0 alone with its own wheels."""
-    wheels = [{key: value for key, value in wheel.items() if key != "body"} for wheel in scene.vehicle["wheel"]
-              if is_of_carriage(wheel)]
-    return {key: value for key, value in scene.vehicle.items() if key != "body"} | {"wheel": wheels}
-
-
-def is_of_carriage(wheel: Mapping[str, Any]) -> bool:
-    """Whether a wheel of a scene is on body 0."""
-    return bool(wheel.get("body", CARRIAGE) == CARRIAGE)
 
 
 def _rolling(scene: Scene, carriage: Mapping[str, Any]) -> Rolling | None:

@@ -16,7 +16,7 @@ from laconic.errors import BadInput
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.ground import base_of
 from laconic.robot.identify.parameter import Vehicle
-from laconic.robot.identify.rolling_evidence import run_of, stretch_errors
+from laconic.robot.identify.rolling_evidence import in_frame, relative, run_of, stretch_errors
 from laconic.robot.identify.solve import Fit
 from laconic.robot.identify.steered_audit import SteeredModel, lag_of_fit
 from laconic.robot.identify.study import Study, fitted_scene, identify
@@ -236,13 +236,8 @@ OF_ROWS = ("time_s", "pose", "pose_rows")     # which are made anew
 def _roll_sideways(paths: Sequence[np.ndarray]) -> bool:
     """Whether the wheels roll to the left at all, from row to row, apart from what turning does to a point ahead of
     the axle. Stretches do not show this, because a curve ends to the left of its beginning."""
-    steps = []
-    for path in paths:
-        step, heading = np.diff(path, axis=0), 0.5 * (path[1:, 2] + path[:-1, 2])
-        cos, sin = np.cos(heading), np.sin(heading)
-        steps.append(np.column_stack([cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0],
-                                      step[:, 2]]))
-    ahead, left, turn = np.vstack(steps).T
+    ahead, left, turn = np.vstack([in_frame(np.diff(path, axis=0), 0.5 * (path[1:, 2] + path[:-1, 2]))
+                                   for path in paths]).T
     whole = float(turn @ turn)
     rest = left - turn * (float(left @ turn) / whole if whole > 0.0 else 0.0)
     return bool(np.linalg.norm(rest) > LEAST_MOVED * np.hypot(np.linalg.norm(ahead), np.linalg.norm(left)))
@@ -253,21 +248,19 @@ def leftovers(runs: Sequence[tuple[Log, np.ndarray]]) -> tuple[dict[str, float],
     errors for a metre) of runs with their rolled paths."""
     told, true, errors = [], [], []
     is_sideways = _roll_sideways([path for _, path in runs])
-    names = [name for name in DIRECTIONS if is_sideways or name != SIDEWAYS]
     for log, path in runs:
         run = run_of(log, by_wheels=False)
         off = stretch_errors(run, path)
-        step, heading = np.diff(path[run.cuts], axis=0), path[run.cuts[:-1], 2]
-        cos, sin = np.cos(heading), np.sin(heading)
-        motion = np.column_stack([cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0], step[:, 2]])
+        motion = relative(path, run.cuts)
         told.append(motion)
         true.append(motion - off)
         errors.append(off / max(path_length(log.time_s, path) / len(off), 1e-9))
     rolled, wanted = np.vstack(told), np.vstack(true)
     gains, gain_errors = {}, {}
     size = np.sqrt((rolled**2).mean(axis=0))
-    for name in names:
-        index = DIRECTIONS.index(name)
+    for index, name in enumerate(DIRECTIONS):
+        if name == SIDEWAYS and not is_sideways:
+            continue
         if size[index] > LEAST_MOVED * size[:2].max() and size[index] > 0.0:
             whole = float((rolled[:, index] ** 2).sum())
             gains[name] = float((rolled[:, index] * wanted[:, index]).sum() / whole)

@@ -11,6 +11,7 @@ from laconic.robot.identify.ground import OF_TREES
 from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
 from laconic.robot.identify.study import Study, fitted_scene, parts
+from laconic.robot.logs.for_vehicle import wheels_on_carriage
 from laconic.scene.scene_text import Comments, lines_of
 from laconic.scene.table import read_toml
 
@@ -23,16 +24,12 @@ def fitted_text(study: Study) -> str:
     data = read_toml(study.scene.path).plain()
     data["source"] = f"{data.get('source', '')}; identified".removeprefix("; ")
     comments: Comments = {}
-    rows = list(enumerate(data["vehicle"]["wheel"]))
-    if not study.scene.has_hinges:  # those of free bodies were left out
-        rows = [(row, wheel) for row, wheel in rows if wheel.get("body", CARRIAGE) == CARRIAGE]
-    for index, (row, wheel) in enumerate(rows):
-        _rewrite(study, index, wheel, comments, row)
+    wheels, has_hinges = data["vehicle"]["wheel"], study.scene.has_hinges
+    rows = range(len(wheels)) if has_hinges else wheels_on_carriage(data["vehicle"])  # of free bodies: left out
+    for index, row in enumerate(rows):
+        _rewrite(study, index, wheels[row], comments, row)
     _rewrite_vehicle(study, data, comments)
-    if not study.scene.has_hinges:
-        _move_hung(study, data["vehicle"], comments)
-    if study.scene.has_hinges:
-        _rewrite_hinges(study, data["vehicle"], comments)
+    (_rewrite_hinges if has_hinges else _move_hung)(study, data["vehicle"], comments)
     head = [f"# {study.scene.path.name}, with parameters identified by `laconic identify` from recorded runs:"]
     head += [f"#   {', '.join(log.path.name for log in part)} of {part[0].session}"
              for part in parts(study.logs, "session")]

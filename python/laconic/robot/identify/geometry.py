@@ -15,10 +15,10 @@ from laconic.scene import Scene
 RELATIVE_SD = 0.1                     # of a radius and of the distances, unless --prior says otherwise
 PLACE_SD_M = 0.03
 ANGLE_SD_RAD = math.radians(2.0)
-GROUPS = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller",
-          *ground.GROUPS, *motion.GROUPS)
+OF_CARRIAGE = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller")
+GROUPS = (*OF_CARRIAGE, *ground.GROUPS, *motion.GROUPS)
 LEAST_SHARE = 0.05                    # of a nominal radius or distance: below it no wheel can be
-ROLLED = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller", "clock-lag")
+ROLLED = (*OF_CARRIAGE, "clock-lag")
 """What paths by rolling tell of a carriage, with or without casters and trailers behind it."""
 
 

@@ -147,6 +147,10 @@ def with_headings(pose: np.ndarray, path: np.ndarray, cuts: np.ndarray) -> np.nd
 
 def relative(pose: np.ndarray, cuts: np.ndarray) -> np.ndarray:
     """Displacement of each stretch in the body's frame at its beginning, and turn."""
-    step, heading = np.diff(pose[cuts], axis=0), pose[cuts[:-1], 2]
+    return in_frame(np.diff(pose[cuts], axis=0), pose[cuts[:-1], 2])
+
+
+def in_frame(step: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Displacements in frames of these headings, and turns."""
     cos, sin = np.cos(heading), np.sin(heading)
     return np.column_stack([cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0], step[:, 2]])

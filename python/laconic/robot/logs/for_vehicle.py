@@ -148,9 +148,14 @@ def is_free(scene: Scene) -> bool:
     return scene.has_hinges and all(hinge.kind == FREE for hinge in scene.hinges)
 
 
+def free_hinges(scene: Scene) -> set[str]:
+    """Names of hinges of casters and trailers."""
+    return {hinge.name for hinge in scene.hinges if hinge.kind == FREE}
+
+
 def asks_free(scene: Scene, logs: Sequence[Log]) -> bool:
     """Whether a map names free hinges of the scene, so that their angles count; or angles, and not of which."""
-    free = {hinge.name for hinge in scene.hinges if hinge.kind == FREE}
+    free = free_hinges(scene)
     return any(log.asks_hinges and log.steering_angle_rad is not None and (not log.hinge_names or free & {
         *log.hinge_names}) for log in logs)
 
@@ -160,9 +165,13 @@ def carriage_of(scene: Scene, logs: Sequence[Log]) -> Scene:
     it; the scene itself where wheels steer or slip, or a map asks for angles of free hinges."""
     if not is_free(scene) or slips(scene.vehicle) or asks_free(scene, logs):
         return scene
-    vehicle = {key: value for key, value in scene.vehicle.items() if key != "body"} | {
-        "wheel": [scene.vehicle["wheel"][index] for index in wheels_on_carriage(scene.vehicle)]}
-    return replace(scene, vehicle=vehicle, hinges=(), wheel_places=())
+    return replace(scene, vehicle=carriage_alone(scene.vehicle), hinges=(), wheel_places=())
+
+
+def carriage_alone(vehicle: Mapping[str, Any]) -> dict[str, Any]:
+    """The vehicle of body 0 with its own wheels."""
+    return {key: value for key, value in vehicle.items() if key != "body"} | {
+        "wheel": [vehicle["wheel"][index] for index in wheels_on_carriage(vehicle)]}
 
 
 def wheels_on_carriage(vehicle: Mapping[str, Any]) -> list[int]:
@@ -174,8 +183,7 @@ def for_carriage(log: Log, scene: Scene) -> Log:
     """The log for the carriage of a scene, with a remark on what of it casters and trailers measured."""
     kept = wheels_on_carriage(scene.vehicle)
     if wheels_of(log) <= len(kept):
-        found, others = for_wheels(log, [scene.vehicle["wheel"][index] for index in kept],
-                                   scene.vehicle.get("wheel_radius_m")), list[int]()
+        found, others = for_vehicle(log, carriage_alone(scene.vehicle)), list[int]()
     else:
         full = for_vehicle(log, scene.vehicle)
         others = [index for index in range(len(scene.vehicle["wheel"])) if index not in kept]
@@ -188,7 +196,7 @@ def for_carriage(log: Log, scene: Scene) -> Log:
 
 def without_free(log: Log, scene: Scene) -> Log:
     """The log without angles of free hinges that no map asks for: what nobody drives measures no odometry."""
-    free = {hinge.name for hinge in scene.hinges if hinge.kind == FREE}
+    free = free_hinges(scene)
     angles = log.steering_angle_rad
     if angles is None and is_free(scene):  # nothing steers, so that no angle is missing
         return replace(log, steering_angle_rad=np.zeros((len(log.time_s), 0)))
@@ -210,7 +218,7 @@ def driven_alone(log: Log, scene: Scene) -> Log:
         return log
     measured = ~np.isnan(values).any(axis=0)
     others = measured & ~is_driven
-    others[wheels_behind(scene, {each.name for each in scene.hinges if each.kind == FREE} - {*log.hinge_names})] = False
+    others[wheels_behind(scene, free_hinges(scene) - {*log.hinge_names})] = False
     if not others.any() or not (measured & is_driven).any():
         return log
     found = _reordered(log, lambda of_wheels: np.where(others, np.nan, of_wheels))
