@@ -49,11 +49,6 @@ static void describe_tree(laconic_node_hinges *found, laconic_real step_s) {
     found->integrator.step_s = step_s;
     found->model.wheel_count = m->wheel_count;
     found->model.body_count = m->body_count;
-    for (int32_t b = 0; b < m->body_count; b++) {
-        const bool prescribed = m->body[b + 1].hinge == LACONIC_HINGE_PRESCRIBED;
-        found->model.link[b].motion = prescribed ? LACONIC_MOTION_PRESCRIBED : LACONIC_MOTION_OWN;
-        found->model.link[b].gain_Nm_per_V = m->motor[m->wheel_count + b].gain_Nm_per_V;
-    }
 }
 
 /* One step of auto; a whole number of it is checked by each step. */
@@ -73,7 +68,6 @@ static laconic_status set_tree_start(laconic_node_hinges *hinges, const laconic_
     memset(&start, 0, sizeof start);
     start.hinged = hinges->start;
     memcpy(start.wheel_speed_rad_per_s, wheel_speed_rad_per_s, sizeof start.wheel_speed_rad_per_s);
-    memcpy(hinges->angle_rad, hinges->start.hinge_angle_rad, sizeof hinges->angle_rad);
     return laconic_tree_state_set(&hinges->tree, &hinges->tree_model, &start, why);
 }
 #endif
@@ -127,9 +121,11 @@ static laconic_status find(laconic_node_hinges *found, const laconic_parameters 
 static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *found, uint8_t *field, uint8_t *item) {
     const laconic_drive_plan *plan = &node->loader.parameters.drives;
     const laconic_articulated_model *m = &found->model;
-    *field = LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
-    *item = 0;
-    if (plan->protocol != 0 && is_to_slip(&node->loader.parameters)) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    if (plan->protocol != 0 && is_to_slip(&node->loader.parameters)) {
+        *field = LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
+        *item = 0;
+        return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    }
     const uint8_t status = laconic_node_check_drives(node, plan, m->wheel_count + m->body_count, field, item);
     if (status != 0) return status;
     for (int32_t b = 0; b < m->body_count; b++) {
@@ -158,6 +154,10 @@ static void adopt(laconic_node *node, const laconic_node_hinges *found) {
     node->hinges.send = send;
     node->send &= (uint8_t)~SENDS_NOT_OF_HINGES;
     node->raw_output.send &= (uint8_t)~RAW_NOT_OF_HINGES;
+#if LACONIC_NODE_WITH_SLIP
+    if (found->slips) node->raw_input.take &= (uint8_t)~LACONIC_RAW_SAMPLED;
+    node->raw_input.take_hinges &= (uint8_t)~(found->slips ? LACONIC_RAW_TWIST : LACONIC_RAW_STEERING_ANGLE);
+#endif
     node->raw_input.hinge_count = found->model.body_count;
 #if LACONIC_NODE_WITH_SENSORS
     memset(&node->sensors, 0, sizeof node->sensors);
@@ -288,9 +288,12 @@ static void set_twist(laconic_node_hinges *hinges, const laconic_real given[3]) 
 #define TWIST_PAGE 6U
 
 #if LACONIC_NODE_WITH_SLIP
-/* Where a hinge takes its command on ground with friction: a rate, or the angle of a servo or loop; NULL: neither. */
-static laconic_real *target_of(laconic_node_hinges *hinges, int32_t b) {
-    const laconic_tree_body *body = &hinges->tree_model.body[b + 1];
+/* Where a hinge takes its command on ground with friction: a voltage, a rate, or the angle of a servo or loop; NULL:
+ * none of that kind. */
+static laconic_real *target_of(laconic_node_hinges *hinges, bool voltages, int32_t b) {
+    const laconic_tree_model *m = &hinges->tree_model;
+    const laconic_tree_body *body = &m->body[b + 1];
+    if (voltages) return m->motor[m->wheel_count + b].gain_Nm_per_V != 0 ? &hinges->input[0].hinge_voltage_V[b] : NULL;
     if (body->servo_gain_Nm_per_rad != 0 || body->loop_V_per_rad != 0) return &hinges->angle_rad[b];
     const bool rates = body->servo_damping_Nms != 0 || body->loop_Vs_per_rad != 0;
     return rates || body->hinge == LACONIC_HINGE_PRESCRIBED ? &hinges->input[0].hinge_rate_rad_per_s[b] : NULL;
@@ -301,13 +304,7 @@ static bool set_three_targets(laconic_node_hinges *hinges, bool voltages, int32_
     laconic_real *to[3] = {NULL, NULL, NULL};
     if (first >= hinges->model.body_count) return false;
     for (int32_t k = 0; k < 3; k++) {
-        const int32_t b = first + k;
-        if (b >= hinges->model.body_count)
-            to[k] = NULL;
-        else if (!voltages)
-            to[k] = target_of(hinges, b);
-        else if (hinges->model.link[b].gain_Nm_per_V != 0)
-            to[k] = &hinges->input[0].hinge_voltage_V[b];
+        if (first + k < hinges->model.body_count) to[k] = target_of(hinges, voltages, first + k);
         if (number[k] != 0 && to[k] == NULL) return false;
     }
     for (int32_t k = 0; k < 3; k++)
@@ -436,10 +433,8 @@ laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t n
 
 void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node) {
 #if LACONIC_NODE_WITH_SLIP
-    laconic_tree_outputs outputs;
     if (node->hinges.slips) {
-        laconic_tree_outputs_of(&outputs, &node->hinges.tree_model, &node->hinges.tree);
-        *motion = outputs.motion;
+        laconic_tree_motion_of(motion, &node->hinges.tree_model, &node->hinges.tree);
         return;
     }
 #endif

@@ -65,8 +65,10 @@ static laconic_real *slot_of_hinge(const laconic_raw_input *raw, int32_t sample,
         if (k < raw->hinge_count) return &all[group][k];
         k -= raw->hinge_count;
     }
-    if ((raw->take_hinges & LACONIC_RAW_TWIST) != 0 && k < 3) return &input->twist[k];
-    if ((raw->take_hinges & LACONIC_RAW_TWIST) != 0) k -= 3;
+    if (raw->take_hinges & LACONIC_RAW_TWIST) {
+        if (k < 3) return &input->twist[k];
+        k -= 3;
+    }
     return &raw->angle_rad[k];
 }
 

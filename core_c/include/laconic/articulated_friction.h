@@ -277,6 +277,10 @@ typedef struct laconic_tree_outputs {
     laconic_real numerical_loss_J;
 } laconic_tree_outputs;
 
+/* The motion alone. */
+void laconic_tree_motion_of(laconic_articulated_motion *motion, const laconic_tree_model *model,
+                            const laconic_tree_state *state);
+
 void laconic_tree_outputs_of(laconic_tree_outputs *outputs, const laconic_tree_model *model,
                              const laconic_tree_state *state);
 

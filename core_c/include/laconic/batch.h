@@ -187,7 +187,7 @@ typedef struct laconic_articulated_batch {
 int32_t laconic_articulated_batch_run(laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
                                       uint64_t steps);
 
-/* Motions of some lanes, as laconic_articulated_motion_of() or laconic_tree_outputs_of() gives them. */
+/* Motions of some lanes, as laconic_articulated_motion_of() or laconic_tree_motion_of() gives them. */
 void laconic_articulated_batch_observe(const laconic_articulated_batch *batch, int32_t first_lane, int32_t lanes,
                                        laconic_articulated_motion *motions);
 

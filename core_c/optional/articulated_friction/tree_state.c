@@ -173,6 +173,13 @@ static void tree_fill_books(laconic_tree_outputs *out, const tree_state *s) {
     out->numerical_loss_J = s->numerical_loss_J.value;
 }
 
+void laconic_tree_motion_of(laconic_articulated_motion *motion, const laconic_tree_model *model,
+                            const laconic_tree_state *state) {
+    tree_posture at;
+    tree_posture_of(&at, model, state);
+    tree_fill_motion(motion, model, state, &at);
+}
+
 void laconic_tree_outputs_of(laconic_tree_outputs *outputs, const laconic_tree_model *model,
                              const laconic_tree_state *state) {
     tree_posture at;

@@ -58,10 +58,8 @@ static void observe_articulated_lane(const laconic_articulated_batch *batch, int
                                      laconic_articulated_motion *motion) {
     const laconic_articulated_kind *kind = articulated_kind_of(batch, lane);
 #if LACONIC_WITH_FRICTION
-    laconic_tree_outputs outputs;
     if (kind->tree != NULL) {
-        laconic_articulated_batch_outputs(batch, lane, 1, &outputs);
-        *motion = outputs.motion;
+        laconic_tree_motion_of(motion, kind->tree, &batch->tree_states[lane]);
         return;
     }
 #endif

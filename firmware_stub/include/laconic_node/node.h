@@ -87,8 +87,8 @@ typedef struct laconic_node_hinges {
     uint8_t angle_group; /* next HINGE_ANGLE group                                                */
     uint8_t rate_group;  /* next HINGE_RATE group                                                 */
 #if LACONIC_NODE_WITH_SLIP
-    bool slips; /* on ground with friction: `tree_model` and `tree` move it; of model and integrator it has counts,
-                   motions and gains of hinges, and the step's size, which the frames of both use */
+    bool slips; /* on ground with friction: `tree_model` and `tree` move it; of model and integrator it has the
+                   counts and the step's size, which the frames of both use */
     laconic_tree_model tree_model;
 #endif
     laconic_articulated_model model;

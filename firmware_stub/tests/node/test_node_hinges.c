@@ -144,6 +144,25 @@ static void a_vehicle_that_slips_has_no_twist_and_no_samples_and_one_that_rolls_
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, select_bits(0, 0, 0, 0, LACONIC_RAW_STEERING_ANGLE));
 }
 
+static void a_choice_that_the_next_vehicle_has_not_ends_with_it(void) {
+    load_tricycle(&prescribed);
+    TEST_ASSERT_EQUAL_UINT8(0, select_bits(0, 0, LACONIC_RAW_SAMPLED | LACONIC_RAW_VOLTAGE, 0, LACONIC_RAW_TWIST));
+    begin_slipping();
+    TEST_ASSERT_EQUAL_UINT8(0, commit());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_RAW_VOLTAGE, node.raw_input.take);
+    TEST_ASSERT_EQUAL_UINT8(0, node.raw_input.take_hinges);
+    TEST_ASSERT_EQUAL_UINT8(0, select_bits(0, 0, LACONIC_RAW_VOLTAGE, 0, LACONIC_RAW_STEERING_ANGLE));
+    load_tricycle(&prescribed);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_RAW_VOLTAGE, node.raw_input.take);
+    TEST_ASSERT_EQUAL_UINT8(0, node.raw_input.take_hinges);
+}
+
+static void an_accepted_vehicle_names_no_field(void) {
+    load_tricycle(&prescribed);
+    TEST_ASSERT_EQUAL_UINT8(0, data[4]);
+    TEST_ASSERT_EQUAL_UINT8(0, data[5]);
+}
+
 static void a_refused_vehicle_leaves_the_one_before(void) {
     const parameter unknown = INTEGER(BODY_HINGE, 1, 9), parent = INTEGER(BODY_PARENT, 1, 1);
     load_tricycle(&prescribed);
@@ -392,6 +411,8 @@ int main(void) {
     RUN_TEST(wheels_of_hinges_slip_as_in_the_core_under_voltages_and_angles);
     RUN_TEST(what_ground_with_friction_lacks_is_refused_by_its_field);
     RUN_TEST(a_vehicle_that_slips_has_no_twist_and_no_samples_and_one_that_rolls_no_angles);
+    RUN_TEST(a_choice_that_the_next_vehicle_has_not_ends_with_it);
+    RUN_TEST(an_accepted_vehicle_names_no_field);
     RUN_TEST(a_refused_vehicle_leaves_the_one_before);
     RUN_TEST(voltages_and_rates_make_the_step_of_the_core);
     RUN_TEST(a_command_is_reached_once_and_then_held);

@@ -74,6 +74,8 @@ def test_each_lane_that_slips_has_the_bits_of_its_vehicle_alone(threads: int) ->
         assert tree_bits(batch.state(lane), batch.core) == tree_bits(plant.c, batch.core)
         found, wanted = batch.outputs[lane], plant.outputs()
         assert batch.motion["x_m"][lane] == wanted.motion.x_m != 0.0
+        assert not batch.motion["hinge_angle_rad"][lane][plant.vehicle.body_count :].any()
+        assert not batch.motion["wheel_angle_rad"][lane][plant.vehicle.wheel_count :].any()
         assert found["slip_loss_J"] == wanted.slip_loss_J
         assert np.array_equal(found["slip_along_m_per_s"][: plant.vehicle.wheel_count], wanted.slip_along_m_per_s)
     assert batch.outputs["slip_loss_J"].min() > 0.0
