@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from laconic.core.articulated import CARRIAGE
-from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows
+from laconic.pictures.curves import plot_over_time
 from laconic.pictures.outlines import DRAWN, hull, outline_points
 
 if TYPE_CHECKING:
@@ -126,28 +126,10 @@ def plot_slipping(axes: Axes, panel: str, run: Trajectory) -> None:
         name, unit, title = SLIPPING[panel]
         columns = run.columns_of(name)
         labels = [f"wheel {i}" for i in range(1, columns.shape[1] + 1)]
-    _over_time(axes, run, columns, labels, (unit, title))
+    plot_over_time(axes, run, columns, labels, (unit, title))
 
 
 def plot_hinges(axes: Axes, run: Trajectory) -> None:
     """The angle of every hinge over time."""
-    _over_time(axes, run, run.columns_of("hinge_angle_rad"), [hinge.name for hinge in run.scene.hinges],
+    plot_over_time(axes, run, run.columns_of("hinge_angle_rad"), [hinge.name for hinge in run.scene.hinges],
                ("hinge angle [rad]", "Hinge angles"), "hinge")
-
-
-def _over_time(axes: Axes, run: Trajectory, columns: np.ndarray, labels: list[str], words: tuple[str, str],
-               rows: str = "") -> None:
-    """Curves with a unit and a title; `rows`: what the rows are of where there are too many for curves."""
-    unit, title = words
-    axes.set_xlabel("time [s]")
-    if columns.shape[1] > MOST_CURVES:
-        plot_rows(axes, run.time_s, columns, unit)
-        if rows:
-            axes.set_ylabel(rows)
-        axes.set_title(title, loc="left")
-        return
-    handles = plot_curves(axes, run.time_s, columns, labels)
-    axes.set_ylabel(unit)
-    axes.margins(x=0.01)
-    keep_scale(axes)
-    head(axes, title, handles)

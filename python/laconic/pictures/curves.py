@@ -117,6 +117,24 @@ def head(axes: Axes, title: str, handles: Sequence[Line2D]) -> None:
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory
 
+def plot_over_time(axes: Axes, run: Trajectory, columns: np.ndarray, labels: Sequence[str], words: tuple[str, str],
+                   rows: str = "") -> None:
+    """Curves with a unit and a title; `rows`: what the rows are of where there are too many for curves."""
+    unit, title = words
+    axes.set_xlabel("time [s]")
+    if columns.shape[1] > MOST_CURVES:
+        plot_rows(axes, run.time_s, columns, unit)
+        if rows:
+            axes.set_ylabel(rows)
+        axes.set_title(title, loc="left")
+        return
+    handles = plot_curves(axes, run.time_s, columns, labels)
+    axes.set_ylabel(unit)
+    axes.margins(x=0.01)
+    keep_scale(axes)
+    head(axes, title, handles)
+
+
 IMU, ENCODERS = "imu", "encoders"
 
 
@@ -145,13 +163,4 @@ def plot_encoders(axes: Axes, run: Trajectory) -> None:
     names = [name for name in run.columns if name.startswith("encoder_count[")]
     counts = np.column_stack([run.columns[name] for name in names])
     wheels = [name.partition("[")[2].removesuffix("]") for name in names]
-    if len(names) > MOST_CURVES:
-        plot_rows(axes, run.time_s, counts, "count")
-        axes.set(xlabel="time [s]", ylabel="encoder")
-        axes.set_title("Encoders", loc="left")
-        return
-    handles = plot_curves(axes, run.time_s, counts, [f"wheel {wheel}" for wheel in wheels])
-    axes.set(xlabel="time [s]", ylabel="count")
-    axes.margins(x=0.01)
-    keep_scale(axes)
-    head(axes, "Encoders", handles)
+    plot_over_time(axes, run, counts, [f"wheel {wheel}" for wheel in wheels], ("count", "Encoders"), "encoder")

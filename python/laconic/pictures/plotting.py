@@ -20,12 +20,9 @@ from laconic.errors import BadInput
 from laconic.pictures.articulated import is_drawn, plot_hinges, plot_slipping, plot_vehicle_path, slipping_panels
 from laconic.pictures.curve_style import style_of, wrapped
 from laconic.pictures.curves import (
-    MOST_CURVES,
     head,
-    keep_scale,
     plot_beside_yaw_rate,
-    plot_curves,
-    plot_rows,
+    plot_over_time,
     plot_sensors,
     sensor_panels,
 )
@@ -127,16 +124,8 @@ def plot_velocities(axes: Axes, run: Trajectory) -> None:
 def plot_wheel_speeds(axes: Axes, run: Trajectory) -> None:
     """Speed of every wheel: curves, or where there are too many to tell apart, a row of colour for each."""
     speeds = run.columns_of("wheel_speed_rad_per_s")
-    if speeds.shape[1] > MOST_CURVES:
-        plot_rows(axes, run.time_s, speeds, "wheel speed [rad/s]")
-        axes.set(xlabel="time [s]", ylabel="wheel")
-        axes.set_title("Wheel speeds", loc="left")
-        return
-    handles = plot_curves(axes, run.time_s, speeds, [f"wheel {i}" for i in range(1, speeds.shape[1] + 1)])
-    axes.set(xlabel="time [s]", ylabel="wheel speed [rad/s]")
-    axes.margins(x=0.01)
-    keep_scale(axes)
-    head(axes, "Wheel speeds", handles)
+    plot_over_time(axes, run, speeds, [f"wheel {i}" for i in range(1, speeds.shape[1] + 1)],
+                   ("wheel speed [rad/s]", "Wheel speeds"), "wheel")
 
 
 def mark_ground(panels: Mapping[str, Axes], run: Trajectory) -> None:

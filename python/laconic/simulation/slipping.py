@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -67,6 +68,9 @@ class SlippingCommands(Commands):
             if not np.any(twist):
                 raise self._no_direction(0)
             self._take_angles(self._steering, twist)
+            for hinge in self._coordinated:
+                raw = wrapped(self._angle[hinge.name])
+                self._winding[hinge.name] = raw, float(np.rint((self._angle[hinge.name] - raw) / (2.0 * math.pi)))
         return [self._angle[hinge.name] for hinge in self.scene.hinges]
 
     def _no_direction(self, step: int) -> Refused:
@@ -108,10 +112,7 @@ class SlippingCommands(Commands):
             raise self._no_direction(first + int(none[0]))
         directions = np.array([self._steering.angles(twist) for twist in twists]).reshape(len(twists), -1)
         for column, hinge in enumerate(self._coordinated):
-            raw, turns = self._winding.get(hinge.name, (math.nan, 0.0))
-            if math.isnan(raw):  # at the start, as start_angles() set it
-                raw = wrapped(before[hinge.name])
-                turns = float(np.rint((before[hinge.name] - raw) / (2.0 * math.pi)))
+            raw, turns = self._winding[hinge.name]
             changes = np.diff(directions[:, column], prepend=raw)
             winding = turns - np.cumsum(np.where(np.abs(changes) > math.pi, np.sign(changes), 0.0))
             path = directions[:, column] + 2.0 * math.pi * winding
@@ -177,15 +178,19 @@ def _reader(signal: str, of_hinge: dict[str, int], wheels: int, vehicle: Slippin
     return lambda found, row, given: float(row[slot])
 
 
+def slipping_start(scene: Scene, angles: Sequence[float]) -> dict[str, Any]:
+    """The numbers of a scene's start, as SlippingVehicle.plant takes them."""
+    start = scene.initial
+    return {"velocity_m_per_s": start.velocity_body_m_per_s, "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s,
+            "x_m": start.x_m, "y_m": start.y_m, "heading_rad": start.heading_rad, "hinge_angle_rad": angles,
+            "hinge_rate_rad_per_s": [hinge.start_rate_rad_per_s for hinge in scene.hinges],
+            "wheel_speed_rad_per_s": start.wheel_speed_rad_per_s or None}
+
+
 def start_slipping(scene: Scene, vehicle: SlippingVehicle, angles: Sequence[float]) -> SlippingPlant:
     """The vehicle of a scene at its start."""
-    start = scene.initial
     try:
-        return vehicle.plant(
-            scene.run.method, scene.run.step_s, velocity_m_per_s=start.velocity_body_m_per_s,
-            yaw_rate_rad_per_s=start.yaw_rate_rad_per_s, x_m=start.x_m, y_m=start.y_m, heading_rad=start.heading_rad,
-            hinge_angle_rad=angles, hinge_rate_rad_per_s=[hinge.start_rate_rad_per_s for hinge in scene.hinges],
-            wheel_speed_rad_per_s=start.wheel_speed_rad_per_s or None)
+        return vehicle.plant(scene.run.method, scene.run.step_s, **slipping_start(scene, angles))
     except Refused as refused:
         raise scene.refusal_in_file(refused, "at t = 0 s") from None
 

@@ -18,7 +18,7 @@ from laconic.core.slipping import SlippingPlant, SlippingVehicle, hinge_keys, wh
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
 from laconic.simulation.articulated import follow_rows, given_start, start_plant, watched_hinges
-from laconic.simulation.slipping import SlippingCommands, start_slipping
+from laconic.simulation.slipping import SlippingCommands, slipping_start, start_slipping
 from laconic.simulation.steering import Commands
 
 HINGED_FRAMES = ("VELOCITY", "HINGE_ANGLE", "HINGE_RATE")
@@ -158,8 +158,8 @@ def hinged_parameters(twin: HingedTwin) -> Iterator[Parameter]:
     """All parameters of a vehicle with hinges, its start and its run."""
     vehicle, core = twin.vehicle, twin.core
     given = given_slipping(twin) if twin.slips else given_start(twin.scene, vehicle)
-    start = core.ffi.new("laconic_start *", {
-        name: given[name] for name in ("x_m", "y_m", "heading_rad", "wheel_speed_rad_per_s") if name in given})
+    of_start = {name: given.get(name) for name in ("x_m", "y_m", "heading_rad", "wheel_speed_rad_per_s")}
+    start = core.ffi.new("laconic_start *", {name: value for name, value in of_start.items() if value is not None})
     yield from vehicle_parameters(core, vehicle.c.base, start, with_drive=twin.slips)
     yield "METHOD", 0, method_names().index(twin.scene.run.method)
     yield "STEP", 0, twin.scene.run.step_s
@@ -203,11 +203,7 @@ def given_slipping(twin: HingedTwin) -> dict[str, Any]:
     if start.wheel_speed_rad_per_s and not any(start.wheel_speed_rad_per_s) and moves:
         raise BadInput(f"{scene.path}: initial.wheel_speed_rad_per_s: a node takes wheels that all stand on a vehicle "
                        "that moves as wheels that roll; give one of them a speed such as 1e-9, or run laconic simulate")
-    return {"velocity_m_per_s": start.velocity_body_m_per_s, "yaw_rate_rad_per_s": start.yaw_rate_rad_per_s,
-            "x_m": start.x_m, "y_m": start.y_m, "heading_rad": start.heading_rad,
-            "hinge_angle_rad": twin.start_angles(),
-            "hinge_rate_rad_per_s": [hinge.start_rate_rad_per_s for hinge in scene.hinges],
-            "wheel_speed_rad_per_s": start.wheel_speed_rad_per_s or ()}
+    return slipping_start(scene, twin.start_angles())
 
 
 # ---- frames
@@ -256,7 +252,7 @@ class NodeInputs:
 
     def __init__(self, twin: HingedTwin):
         self.core, self._vehicle = twin.core, twin.vehicle
-        self._targets = targets_of(twin)
+        self.targets = targets_of(twin)
         self._start = resting_row(twin)
         self._end = self._start.copy()
         self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
@@ -275,8 +271,8 @@ class NodeInputs:
             return
         first = WHEELS_A_GROUP * (page % 3)
         count = min(WHEELS_A_GROUP, self._vehicle.body_count - first)
-        if self._targets is not None and page < 3:
-            for slot, target in zip(self._targets[first : first + count], numbers, strict=False):
+        if self.targets is not None and page < 3:
+            for slot, target in zip(self.targets[first : first + count], numbers, strict=False):
                 if slot is not None:
                     self._start[slot] = self._end[slot] = target
             return
@@ -316,7 +312,7 @@ class Steering:
 
     def __init__(self, node: NodeClient, twin: HingedTwin):
         self.node, self.overranges, self._inputs = node, 0, NodeInputs(twin)
-        self._targets = targets_of(twin)
+        self._targets = self._inputs.targets
         self._vehicle, self._frame = twin.vehicle, wire()["STEERING"]
         self._at = {name: member_of(twin.core, name)[0] for name in RAW_INPUTS.values()}
         kinds = [hinge.kind for hinge in twin.scene.hinges]
@@ -365,14 +361,8 @@ def targets_of(twin: HingedTwin) -> list[int | None] | None:
     if not isinstance(vehicle, SlippingVehicle):
         return None
     rates, angles = vehicle.slots("steering_rate_rad_per_s"), vehicle.slots("steering_angle_rad")
-    found: list[int | None] = []
-    for at in range(vehicle.body_count):
-        of = vehicle.tree.hinge[at]
-        by_rate = of.servo_damping_Nms or of.loop_Vs_per_rad
-        by_angle = of.servo_gain_Nm_per_rad or of.loop_V_per_rad
-        prescribed = vehicle.model.body[at + 1].hinge == vehicle.core.lib.LACONIC_HINGE_PRESCRIBED
-        found.append(angles[at] if by_angle else rates[at] if by_rate or prescribed else None)
-    return found
+    return [angles[at] if hinge.follows == "angle" else rates[at] if hinge.follows or hinge.is_commanded else None
+            for at, hinge in enumerate(twin.scene.hinges)]
 
 
 def run_commanded(plant: HingedPlant, now: np.ndarray, command: np.ndarray | None, steps: int) -> np.ndarray:
