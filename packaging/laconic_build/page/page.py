@@ -91,7 +91,7 @@ class TooLarge(Exception):
 
 def binding_names(binding: Path) -> dict[str, Path]:
     """The names by which the page imports the npm package's modules."""
-    inner = ("hinges", "hinge_inputs", "hinge_tables", "module", "scene")
+    inner = ("hinges", "hinge_friction", "hinge_inputs", "hinge_tables", "module", "scene")
     return {"laconic": binding / "index.js"} | {f"laconic/{name}": binding / f"{name}.js" for name in inner}
 
 

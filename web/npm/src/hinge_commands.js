@@ -165,27 +165,32 @@ export class Commands {
    * @returns {Acting & {undo: () => void}}
    */
   step(/** @type {number} */ time_s, /** @type {number} */ h) {
-    const angles = new Map(this.angles),
-      limited = new Map([...this.limited].map(([key, each]) => [key, { ...each }])),
-      twist = this.twist;
+    const undo = this.undoing();
     try {
-      const rates = this.prescribed.map((hinge) => ({ name: hinge.name, rate: this.follow(hinge, time_s, h) }));
-      if (this.coordinated.length) this.steer(time_s, h);
-      return { rates, twist: this.twist, undo: () => this.restore(angles, limited, twist) };
+      return { rates: this.turn(time_s, h), twist: this.twist, undo };
     } catch (refused) {
-      this.restore(angles, limited, twist);
+      undo();
       throw refused;
     }
   }
 
-  restore(
-    /** @type {Map<string, number>} */ angles,
-    /** @type {Map<string, any>} */ limited,
-    /** @type {number[]} */ twist,
-  ) {
-    this.angles = angles;
-    this.limited = limited;
-    this.twist = twist;
+  /** What takes back all that happens from now on. @returns {() => void} */
+  undoing() {
+    const angles = new Map(this.angles),
+      limited = new Map(this.limited),
+      twist = this.twist;
+    return () => {
+      this.angles = angles;
+      this.limited = limited;
+      this.twist = twist;
+    };
+  }
+
+  /** Rates and angles of one step. @returns {Acting["rates"]} */
+  turn(/** @type {number} */ time_s, /** @type {number} */ h) {
+    const rates = this.prescribed.map((hinge) => ({ name: hinge.name, rate: this.follow(hinge, time_s, h) }));
+    if (this.coordinated.length) this.steer(time_s, h);
+    return rates;
   }
 
   /** The rate of a prescribed hinge over a step, within its limits. */
@@ -368,27 +373,25 @@ export class SlippingCommands extends Commands {
       : { name, rate: 0, angle: this.angles.get(name) };
   }
 
-  step(/** @type {number} */ time_s, /** @type {number} */ h) {
-    const { raw, turnsBeyond } = this,
-      before = new Map(this.angles),
-      limited = new Map([...this.limited].map(([key, each]) => [key, { ...each }])),
-      twist = this.twist;
-    const undo = () => {
-      this.restore(before, limited, twist);
-      [this.raw, this.turnsBeyond] = [raw, turnsBeyond];
-    };
-    try {
-      const { rates } = super.step(time_s, h);
-      for (const hinge of this.followers) {
-        if (hinge.follows === "angle") this.follow(hinge, time_s, h);
-        rates.push(this.held(hinge));
-      }
-      rates.push(...this.coordinate(before, h));
-      return { rates, twist: this.twist, undo };
-    } catch (refused) {
+  undoing() {
+    const undo = super.undoing(),
+      { raw, turnsBeyond } = this;
+    return () => {
       undo();
-      throw refused;
+      this.raw = raw;
+      this.turnsBeyond = turnsBeyond;
+    };
+  }
+
+  /** @returns {Acting["rates"]} */
+  turn(/** @type {number} */ time_s, /** @type {number} */ h) {
+    const before = new Map(this.angles),
+      rates = super.turn(time_s, h);
+    for (const hinge of this.followers) {
+      if (hinge.follows === "angle") this.follow(hinge, time_s, h);
+      rates.push(this.held(hinge));
     }
+    return [...rates, ...this.coordinate(before, h)];
   }
 
   /** Angles and rates of coordinated hinges along the twist at the end of a step. */

@@ -1,4 +1,5 @@
 // What a hinge and its wheels have on ground with friction alone: servos, loops, stops, dry friction, scrub, creep.
+import { isStopped } from "./hinge_commands.js";
 import { Refused } from "./refused.js";
 
 const OF_HINGES = ["com_z_m", "dry_friction_Nm"];
@@ -7,6 +8,9 @@ const OF_SERVOS = [GAIN, "servo_damping_Nms", "servo_limit_Nm"];
 const OF_LOOPS = ["loop_V_per_rad", "loop_Vs_per_rad"];
 const PERIOD = "control_period_s";
 export const OF_WHEELS = ["load_N", "scrub_radius_m", "scrub_fade_m", "creep"];
+const OF_TURNED = [...OF_HINGES, ...OF_SERVOS, ...OF_LOOPS, PERIOD];
+/** All keys of a wheel or body that act on ground with friction alone. */
+export const ON_FRICTION = [...OF_TURNED, ...OF_WHEELS, "hitch"];
 const NO_STOP_RAD = 1e6; // on one side of a hinge that has a stop on the other
 
 /** Whether the ground of a scene lets wheels slip. */
@@ -14,9 +18,17 @@ export function slipsOn(/** @type {any} */ ground) {
   return ground?.friction_coefficient !== undefined;
 }
 
+export function noEffect(/** @type {string} */ path, /** @type {string} */ explanation) {
+  return new Refused(path, explanation, "no effect");
+}
+
+export function parentKey(/** @type {import("./hinge_tables.js").Hinge} */ hinge) {
+  return hinge.place.startsWith("vehicle.wheel") ? "body" : "parent";
+}
+
 export function refusedForGround(/** @type {string} */ path) {
   const told = "acts on ground with friction alone; give ground.friction_coefficient, or take it out";
-  return new Refused(path, told, "no effect");
+  return noEffect(path, told);
 }
 
 /** The keys of a table that are given, with their values. @returns {Record<string, any>} */
@@ -45,7 +57,7 @@ export function contactOf(
 }
 
 function needing(/** @type {string} */ path, /** @type {string} */ other) {
-  return new Refused(path, `has no effect without ${other}; give it, too`, "no effect");
+  return noEffect(path, `has no effect without ${other}; give it, too`);
 }
 
 /**
@@ -56,18 +68,18 @@ function needing(/** @type {string} */ path, /** @type {string} */ other) {
 export function turnedBy(part, given, own, slips) {
   const { hinge, wheels } = part,
     { kind, place } = hinge;
-  const more = givenOf(place, given, own, [...OF_HINGES, ...OF_SERVOS, ...OF_LOOPS, PERIOD], slips);
+  const more = givenOf(place, given, own, OF_TURNED, slips);
   if (!slips) return part;
   checkControl(place, kind, more);
   const body = { ...part.body, ...more };
   if (kind === "coordinated" && body.parent !== "carriage")
     throw new Refused(
-      `${place}.${place.startsWith("vehicle.wheel") ? "body" : "parent"}`,
+      `${place}.${parentKey(hinge)}`,
       "a coordinated hinge is on the carriage; take it out, or give the hinge a servo of its own",
       "coordinated on body",
     );
   if (kind === "coordinated" || kind === "servo") body.hinge = body[GAIN] ? "free" : "prescribed";
-  if (body.hinge !== "prescribed" && (Number.isFinite(hinge.low) || Number.isFinite(hinge.high))) {
+  if (body.hinge !== "prescribed" && isStopped(hinge)) {
     body.stop_low_rad = Math.max(hinge.low, -NO_STOP_RAD);
     body.stop_high_rad = Math.min(hinge.high, NO_STOP_RAD);
   }
@@ -79,25 +91,22 @@ function checkControl(/** @type {string} */ place, /** @type {string} */ kind, /
   const hasServo = Boolean(more[GAIN]);
   for (const key of OF_SERVOS) {
     if (key in more && (kind === "motor" || kind === "prescribed"))
-      throw new Refused(
+      throw noEffect(
         `${place}.${key}`,
         `is of a servo, and this hinge is "${kind}"; take it out, or give the hinge a servo`,
-        "no effect",
       );
     if (key in more && !hasServo) throw needing(`${place}.${key}`, GAIN);
   }
   for (const key of OF_LOOPS)
     if (key in more && kind !== "motor")
-      throw new Refused(
+      throw noEffect(
         `${place}.${key}`,
         `is of a loop of a motor, and this hinge is "${kind}"; take it out, or make it "motor"`,
-        "no effect",
       );
   if (PERIOD in more && !(hasServo || OF_LOOPS.some((key) => more[key])))
-    throw new Refused(
+    throw noEffect(
       `${place}.${PERIOD}`,
       `is of a servo or loop, and there is none; give ${GAIN} or ${OF_LOOPS[0]}, too`,
-      "no effect",
     );
   if (kind === "servo" && !hasServo)
     throw new Refused(

@@ -1,6 +1,6 @@
 // Bodies on hinges in a scene: steered wheels, casters and trailers, and the general body that they are short for.
 import { askFinite, askFlag, askList, askTable, toldOf, unknownKey } from "./checks.js";
-import { OF_WHEELS, contactOf, refusedForGround, turnedBy } from "./hinge_friction.js";
+import { OF_WHEELS, contactOf, noEffect, parentKey, refusedForGround, turnedBy } from "./hinge_friction.js";
 import { HINGE_KEYS } from "./hinge_keys.js";
 import { Refused } from "./refused.js";
 import { inPlace, inRad } from "./scene.js";
@@ -334,10 +334,6 @@ function checkCommand(
     );
 }
 
-function noEffect(/** @type {string} */ path, /** @type {string} */ explanation) {
-  return new Refused(path, explanation, "no effect");
-}
-
 function noBody(/** @type {string} */ path, /** @type {string} */ name, /** @type {string[]} */ names) {
   return new Refused(path, `there is no body ${toldOf(name)}; use ${names.join(", ")}`, "body unknown");
 }
@@ -379,10 +375,6 @@ function parentsFirst(/** @type {Part[]} */ parts) {
     placed.add(ready.hinge.name);
   }
   return found;
-}
-
-function parentKey(/** @type {Hinge} */ hinge) {
-  return hinge.place.startsWith("vehicle.wheel") ? "body" : "parent";
 }
 
 /** The keys of the short forms for those of a body. @type {Record<string, Record<string, string>>} */

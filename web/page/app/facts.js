@@ -1,4 +1,5 @@
 // What the build put into the page: the scenes, and the hash of the native core.
+import { ON_FRICTION, slipsOn } from "laconic/hinge_friction";
 import { bytesOf, unpacked } from "laconic/module";
 
 const given = await unpacked(bytesOf(document.getElementById("facts")?.textContent ?? ""));
@@ -51,11 +52,10 @@ export function plain(/** @type {any} */ { id: _, ...scene }) {
 
 /** Whether wheels slip. */
 export function slips(/** @type {any} */ scene) {
-  return scene.ground?.friction_coefficient !== undefined;
+  return slipsOn(scene.ground);
 }
 
 const OF_FRICTION = ["friction_coefficient", "roller_drag", "axle_friction_Nm", "motor_circuit"];
-const OF_SLIPPING_HINGES = /^(servo_|loop_|control_|load_|scrub_(radius|fade)|creep|hitch$|dry_|com_z_m)/;
 
 /** The same robot on ideal ground, with motors without limits; a slope stays. */
 export function onIdealGround(/** @type {any} */ scene) {
@@ -66,8 +66,7 @@ export function onIdealGround(/** @type {any} */ scene) {
   if (friction_coefficient !== undefined) ideal.vehicle.friction_coefficient = friction_coefficient;
   for (const wheel of ideal.vehicle.wheel) for (const key of OF_FRICTION) delete wheel[key];
   for (const form of ["wheel", "body", "caster", "trailer"])
-    for (const each of ideal.vehicle[form] ?? [])
-      for (const key of Object.keys(each)) if (OF_SLIPPING_HINGES.test(key)) delete each[key];
+    for (const each of ideal.vehicle[form] ?? []) for (const key of ON_FRICTION) delete each[key];
   if (ideal.initial) delete ideal.initial.wheel_speed_rad_per_s;
   return ideal;
 }
