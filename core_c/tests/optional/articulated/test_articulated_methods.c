@@ -195,7 +195,7 @@ static void every_method_turns_a_prescribed_hinge_by_the_integral_of_its_rate(vo
     }
 }
 
-/* Without damping and on a short trail auto judges by energy where nothing acts, and by its rates where anything does. */
+/* Without damping and on a short trail auto judges by energy where nothing acts, else by its rates. */
 static void auto_meets_an_undamped_short_trail_under_every_kind_of_input(void) {
     laconic_articulated_vehicle v = carriage(20, 0.8, 0, 0);
     hang_wheel(&v, 0, 0, 0.2, 0);

@@ -1,4 +1,4 @@
-/* Tests of batch.c: shapes, kinds, memory, and the order of lanes; of batch_articulated.c: lanes of vehicles with hinges. */
+/* Tests of batch.c: shapes, kinds, memory, the order of lanes; of batch_articulated.c: lanes with hinges. */
 #include "../articulated_friction/slipping_trees.h"
 #include "population.h"
 
