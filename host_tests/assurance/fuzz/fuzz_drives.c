@@ -5,10 +5,8 @@
  * bit 29 29-bit) and n modulo 65 bytes; from 128 on one to eight steps are taken (three bits), before each of which no
  * time or 1 ms to 16 s pass (four bits: a power of two), so that a silence costs as much as a step. A frame that is
  * both remote and FD, which no bus has, stands for faults by order: bit 0 of the identifier is the drive, the bits
- * above are the orders. */
-#ifndef FUZZ_DRIVES_H
-#define FUZZ_DRIVES_H
-
+ * above are the orders. The protocol is an option, FUZZ_ROBOMASTER (C610 by the first byte's lowest bit, else C620),
+ * FUZZ_MOTEUS or FUZZ_ODRIVE. */
 #include "laconic_drives/protocol.h"
 
 #include <stdlib.h>
@@ -26,11 +24,11 @@ static struct {
 static laconic_real speed[FUZZ_DRIVES];
 static uint32_t now_us;
 
-static inline void must(bool holds) {
+static void must(bool holds) {
     if (!holds) abort();
 }
 
-static inline void begin(const laconic_drive_protocol *protocol, int32_t first_id) {
+static void begin(const laconic_drive_protocol *protocol, int32_t first_id) {
     const laconic_drive_settings settings = {
         .encoder_counts = 16384,
         .gear_ratio = -3,
@@ -62,7 +60,7 @@ static inline void begin(const laconic_drive_protocol *protocol, int32_t first_i
     protocol->start(&drives, now_us);
 }
 
-static inline void take_frames(void) {
+static void take_frames(void) {
     laconic_frame frame;
     int32_t count = 0;
     for (; drives.protocol->next_frame(&drives, &frame); count++) {
@@ -71,7 +69,7 @@ static inline void take_frames(void) {
     }
 }
 
-static inline void step(uint32_t passes_us) {
+static void step(uint32_t passes_us) {
     now_us += passes_us;
     drives.protocol->on_step(&drives, now_us);
     for (int32_t i = 0; i < FUZZ_DRIVES; i++) {
@@ -82,7 +80,7 @@ static inline void step(uint32_t passes_us) {
     }
 }
 
-static inline int fuzz(const laconic_drive_protocol *protocol, int32_t first_id, const uint8_t *data, size_t size) {
+static int fuzz(const laconic_drive_protocol *protocol, int32_t first_id, const uint8_t *data, size_t size) {
     begin(protocol, first_id);
     while (size > 0) {
         const uint8_t what = *data++;
@@ -120,4 +118,14 @@ static inline int fuzz(const laconic_drive_protocol *protocol, int32_t first_id,
     return 0;
 }
 
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+#ifdef FUZZ_ROBOMASTER
+    const laconic_drive_protocol *const protocol =
+        size > 0 && (data[0] & 1U) ? &laconic_robomaster_c610 : &laconic_robomaster;
+    return size > 0 ? fuzz(protocol, 1, data + 1, size - 1) : 0;
+#elif defined FUZZ_MOTEUS
+    return fuzz(&laconic_moteus, 1, data, size);
+#else
+    return fuzz(&laconic_odrive, 0, data, size);
 #endif
+}
