@@ -1,5 +1,5 @@
-/* Checks the reactions of the ground during a run and logs once what the ground cannot provide. */
-#include "grip_warning.h"
+/* What is logged once in a run: what the ground cannot provide, by its reactions, and voltages without a motor. */
+#include "parts.h"
 
 static void warn_of_lift(const fmu_instance *instance) {
     const laconic_grip_event *event = &instance->model.pending_lift;
@@ -74,4 +74,27 @@ void fmu_model_completed_step(fmu_instance *instance) {
     fmu_model_refresh(instance, FMU_GROUP_GROUND);
     fmu_grip_check(instance, &instance->model.ground, instance->model.time_s);
     fmu_model_settle_warnings(instance, true);
+}
+
+/* ------------------------------------------------------------- voltages of wheels without a motor -- */
+
+void fmu_idle_motors_find(fmu_model *model) {
+    model->idle_wheels = false;
+    for (int32_t i = 0; i < model->plant.model.wheel_count; i++)
+        if (model->plant.model.voltage_scale[i] == 0.0) model->idle_wheels = true;
+}
+
+void fmu_idle_motors_check(fmu_instance *instance) {
+    const fmu_model *self = &instance->model;
+    if (instance->warnings_given & FMU_IDLE_WARNING) return;
+    for (int32_t i = 0; i < self->plant.model.wheel_count; i++) {
+        const double voltage_V = self->input.voltage_V[i];
+        if (voltage_V == 0.0 || self->plant.model.voltage_scale[i] != 0.0) continue;
+        instance->warnings_given |= FMU_IDLE_WARNING;
+        fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
+                "voltage_V[%d]: %.9g V has no effect: wheel %d has no motor (wheel_undriven, or a motor gain of 0); "
+                "give 0, or drive the wheel by axle_torque_Nm (logged once)",
+                (int)(i + 1), voltage_V, (int)(i + 1));
+        return;
+    }
 }
