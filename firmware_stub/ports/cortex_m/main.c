@@ -6,8 +6,7 @@
 #include "laconic_node/node.h"
 #include "laconic_node/slcan.h"
 #include "laconic_wire.h"
-#include "methods.h"
-#include "protocols.h"
+#include "linked.h"
 #include "watch.h"
 
 #define RING_SIZE 256U /* 11 classic frames; a power of two */
