@@ -134,9 +134,9 @@ int main(void) {
     board_init();
     begin();
     for (;;) {
-        const bool received = receive_some();
+        const bool is_busy = receive_some();
         port_on_tick(&node, board_now_us());
         const bool sending = send_some();
-        if (!received && !sending && node.pending == 0 && !has_steps()) sleep_until_interrupt();
+        if (!is_busy && !sending && node.pending == 0 && !has_steps()) sleep_until_interrupt();
     }
 }
