@@ -25,6 +25,7 @@ from laconic.scene.ground import slips
 WEAK = 1.0            # information in units of the prior: below it the runs say less than was known beforehand
 PARTS = 0.35          # a parameter is named where its share in a combination is at least so much of the largest
 TELLS_ALL = "The runs tell every parameter better than it was known before."
+LEAST_LEFT = 1e-15     # of the uncertainty beforehand: sums in double precision know no less
 HELPS = 0.9           # of the uncertainty: a run that leaves more is no advice
 SAMPLES, PERIOD_S = 200, 0.05
 MOTIONS = {
@@ -128,7 +129,7 @@ def advice(found: Fit, direction: np.ndarray, candidates: dict[str, np.ndarray])
     now = found.asked_information + np.eye(len(direction))
 
     def left(more: np.ndarray) -> float:
-        return float(direction @ np.linalg.solve(now + more, direction))
+        return max(float(direction @ np.linalg.solve(now + more, direction)), LEAST_LEFT)  # rounding may go below 0
 
     before = left(np.zeros_like(now))
     best = min(candidates, key=lambda name: left(candidates[name]), default="")
