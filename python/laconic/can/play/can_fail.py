@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from laconic.can.play.fault_kinds import BUS_OFF, ERROR_FRAMES, KINDS, OF_WHEEL, SILENT, STALL
 from laconic.can.play.options import PlayOptions
+from laconic.can.play.protocols import BUS_OFF, ERROR_FRAMES, KINDS, OF_WHEEL, SILENT, STALL
 from laconic.can.play.settings import DriveSettings
 from laconic.scene import Scene
 
