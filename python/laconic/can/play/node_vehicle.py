@@ -69,7 +69,7 @@ class NodeVehicle:
             self._notes.append(f"the node was found in state {found} and has been stopped before")
         self.client.link.listeners.append(self._hear_early)
         try:
-            self._load(without_sensors(played(self.scene)))
+            self._load(without_sensors(played(self.scene, self.settings.driven)))
             self._count_before()
             self.choose_frames(*self.watched)
             self.client.start_drives()
