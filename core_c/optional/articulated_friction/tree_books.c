@@ -42,7 +42,7 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     const real old = s->wheel_speed_rad_per_s[i], speed = c->speed, change = speed - old;
     const real torque = p->in->hinged.base.axle_torque_Nm[i];
     for (int k = 0; k < 2; k++) {
-        e->slip += c->impulse[k] * (tree_dot(&c->row[k], c->on, &p->problem.nu, false) - w->rim[k] * speed);
+        e->slip += c->impulse[k] * (c->moved[k] - w->rim[k] * speed);
         s->grip_N[i][k] = c->impulse[k] / p->h;
     }
     e->axle += p->h * w->dry_Nm * magnitude(speed);
@@ -57,7 +57,7 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     if (p->scrub[i] < 0) return;
     const tree_element *scrub = &p->problem.element[p->scrub[i]];
     s->scrub_Nm[i] = scrub->q / p->h;
-    e->scrub += scrub->q * tree_dot(scrub->row, scrub->on, &p->problem.nu, false);
+    e->scrub += scrub->q * s->body[w->body].z;
 }
 
 /* Torque on the body that servo, motor or prescribed rate gave. */

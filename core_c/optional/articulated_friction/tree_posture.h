@@ -60,6 +60,18 @@ INLINE real tree_dot(const tree_row *row, const tree_body *on, const tree_vector
     return sum;
 }
 
+/* The same of both rows of a contact. */
+INLINE void tree_dot_both(real out[2], const tree_row rows[2], const tree_body *on, const tree_vector *x, bool star) {
+    real first = dot(rows[0].base, x->base), second = dot(rows[1].base, x->base);
+    for (int32_t k = 0; k < tree_depth(on, star); k++) {
+        const real turn = x->hinge[on->path[k]];
+        first += rows[0].along[k] * turn;
+        second += rows[1].along[k] * turn;
+    }
+    out[0] = first;
+    out[1] = second;
+}
+
 INLINE real tree_row_product(const tree_row *a, const tree_row *b, const tree_body *on, bool star) {
     real sum = dot(a->base, b->base);
     for (int32_t k = 0; k < tree_depth(on, star); k++) sum += a->along[k] * b->along[k];
@@ -69,6 +81,14 @@ INLINE real tree_row_product(const tree_row *a, const tree_row *b, const tree_bo
 INLINE void tree_subtract(tree_vector *from, const tree_row *row, real times_row, const tree_body *on, bool star) {
     from->base = minus(from->base, scaled(times_row, row->base));
     for (int32_t k = 0; k < tree_depth(on, star); k++) from->hinge[on->path[k]] -= times_row * row->along[k];
+}
+
+INLINE void tree_subtract_both(tree_vector *from, const tree_row rows[2], const real by[2], const tree_body *on,
+                               bool star) {
+    const real a = by[0], b = by[1];
+    from->base = minus(from->base, plus(scaled(a, rows[0].base), scaled(b, rows[1].base)));
+    for (int32_t k = 0; k < tree_depth(on, star); k++)
+        from->hinge[on->path[k]] -= a * rows[0].along[k] + b * rows[1].along[k];
 }
 
 static inline void tree_add(tree_vector *to, const tree_vector *x, int32_t hinges) {

@@ -17,20 +17,25 @@ static real tree_free_energy(const tree_problem *p) {
     real energy = tree_square(&p->free, p->m->body_count);
     for (int32_t i = 0; i < p->contact_count; i++) {
         const friction_load *l = &p->contact[i].load;
-        const real inertia = p->contact[i].wheel->inertia_kgm2, push = inertia * l->free_speed + drive_at(l, R(0));
+        const real inertia = p->contact[i].wheel->inertia_kgm2, drive = drive_at(l, R(0));
+        const real push = p->contact[i].push + drive;
         const real slope = magnitude(l->drive) < l->drive_limit ? l->drive_slope : R(0);
         energy += push * push / (inertia + l->viscous + slope);
         energy += zero_if_finite(l->viscous) + zero_if_finite(l->drive_slope);
         energy += zero_if_finite(l->grip) + zero_if_finite(l->axle) + zero_if_finite(l->drive_limit);
     }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        const tree_element *e = &p->element[i];
-        energy += zero_if_finite(e->target) + zero_if_finite(e->compliance) + zero_if_finite(e->mobility);
-        if (e->compliance > R(0) && e->high < LACONIC_REAL_MAX) {
-            const real q = cut(e->target / e->compliance, e->high);
-            energy += q * q * e->mobility / (R(1) + e->mobility / e->compliance);
-        } else if (tree_unbounded(e)) {
-            energy += e->target * e->target / e->mobility;
+    for (int32_t i = 0; i < p->bundle_count; i++) {
+        const tree_bundle *b = &p->bundle[i];
+        energy += zero_if_finite(b->mobility);
+        for (int32_t j = b->first; j < b->end; j++) {
+            const tree_element *e = &p->element[j];
+            energy += zero_if_finite(e->target) + zero_if_finite(e->compliance);
+            if (e->compliance > R(0) && e->high < LACONIC_REAL_MAX) {
+                const real q = cut(e->target / e->compliance, e->high);
+                energy += q * q * b->mobility / (R(1) + b->mobility / e->compliance);
+            } else if (tree_unbounded(e)) {
+                energy += e->target * e->target / b->mobility;
+            }
         }
     }
     return energy;
@@ -38,24 +43,25 @@ static real tree_free_energy(const tree_problem *p) {
 
 /* Contacts and elements that hold each other with many times the free motion would drown the speeds in rounding. */
 static void tree_forget_stress(tree_problem *p) {
+    const real most = MOST_STRESS * p->scale;
     for (int32_t i = 0; i < p->contact_count; i++) {
         real *q = p->contact[i].impulse;
-        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > MOST_STRESS * p->scale) q[0] = q[1] = R(0);
+        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > most) q[0] = q[1] = R(0);
     }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        tree_element *e = &p->element[i];
-        if (e->q * e->q * e->mobility > MOST_STRESS * p->scale) e->q = R(0);
+    for (int32_t i = 0; i < p->bundle_count; i++) {
+        const tree_bundle *b = &p->bundle[i];
+        for (int32_t j = b->first; j < b->end; j++)
+            if (p->element[j].q * p->element[j].q * b->mobility > most) p->element[j].q = R(0);
     }
 }
 
 void laconic_tree_follow(tree_problem *p) {
-    p->nu.base = p->free.base;
-    for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = p->free.hinge[j];
+    p->nu = p->free;
     laconic_tree_take_forces(&p->nu, p);
+    laconic_tree_look(p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         tree_contact *c = &p->contact[i];
-        const real push = c->wheel->inertia_kgm2 * c->load.free_speed + c->wheel->rim[0] * c->impulse[0] +
-                          c->wheel->rim[1] * c->impulse[1];
+        const real push = c->push + c->wheel->rim[0] * c->impulse[0] + c->wheel->rim[1] * c->impulse[1];
         c->speed = turning_of(c->wheel->inertia_kgm2, &c->load, R(0), c->load.axle, push).speed;
     }
 }
@@ -64,6 +70,7 @@ static void tree_rest(tree_problem *p) {
     p->nu.base = none;
     for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = R(0);
     for (int32_t i = 0; i < p->contact_count; i++) p->contact[i].speed = R(0);
+    laconic_tree_look(p);
 }
 
 static void tree_snap(tree_problem *p) {
@@ -95,7 +102,9 @@ static bool tree_is_resolved(tree_search *at) {
         stress += (c->impulse[0] * c->impulse[0] + c->impulse[1] * c->impulse[1]) * c->mobility;
         residual -= at->sight[i].firm;
     }
-    for (int32_t i = 0; i < p->element_count; i++) stress += p->element[i].q * p->element[i].q * p->element[i].mobility;
+    for (int32_t i = 0; i < p->bundle_count; i++)
+        for (int32_t j = p->bundle[i].first; j < p->bundle[i].end; j++)
+            stress += p->element[j].q * p->element[j].q * p->bundle[i].mobility;
     return residual + tree_imbalance_square(p) <= RESOLVED * RESOLVED * p->scale + ROUNDED * ROUNDED * stress;
 }
 
@@ -120,6 +129,7 @@ static void tree_go_back(tree_problem *p, const tree_kept *kept) {
         for (int m = 0; m < 2; m++) p->contact[i].impulse[m] = kept->impulse[i][m];
     }
     for (int32_t i = 0; i < p->element_count; i++) p->element[i].q = kept->q[i];
+    laconic_tree_look(p);
 }
 
 /* How far the contact's impulse can grow by such a change until it is at the border of its grip. */
@@ -146,10 +156,11 @@ static real tree_change(const tree_problem *p, const tree_kept *from, const tree
             const real off = to->impulse[i][m] - from->impulse[i][m] - share * was;
             sum += off * off * p->contact[i].mobility;
         }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        const real off = to->q[i] - from->q[i] - share * (from->q[i] - less->q[i]);
-        sum += off * off * p->element[i].mobility;
-    }
+    for (int32_t i = 0; i < p->bundle_count; i++)
+        for (int32_t j = p->bundle[i].first; j < p->bundle[i].end; j++) {
+            const real off = to->q[j] - from->q[j] - share * (from->q[j] - less->q[j]);
+            sum += off * off * p->bundle[i].mobility;
+        }
     return sum;
 }
 
@@ -222,8 +233,7 @@ static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
 RARE bool tree_search_along_path(tree_search *at, int32_t *passes) {
     tree_path path;
     tree_kept kept;
-    at->p->penalty = PENALTY; /* rounding: contacts that hold each other may need it */
-    for (int32_t i = 0; i < at->p->element_count; i++) laconic_tree_stiffen(&at->p->element[i], PENALTY);
+    laconic_tree_stiffen(at->p, PENALTY); /* rounding: contacts that hold each other may need it */
     laconic_tree_start_path(at->p, &path);
     for (int32_t ahead = FIRST_AHEAD; *passes + ahead + TRIED + 1 <= FRICTION_MOST_PASSES; ahead = AHEAD) {
         for (int32_t pass = 0; pass < ahead; pass++) laconic_tree_follow_path(at->p, &path);

@@ -82,23 +82,26 @@ static void tree_find_momenta(tree_part *p) {
 
 /* ------------------------------------------------------------------------------------------ hinges -- */
 
-static tree_element *tree_new_element(tree_part *p, int32_t b, const tree_row *row) {
-    tree_element *e = &p->problem.element[p->problem.element_count++];
-    e->on = &p->m->body[b];
-    e->row = row;
+static tree_element *tree_new_element(tree_part *p, int32_t *index) {
+    tree_problem *q = &p->problem;
+    tree_element *e = &q->element[q->element_count];
+    *index = q->element_count++;
+    q->bundle[q->bundle_count - 1].end = q->element_count;
     e->low = -LACONIC_REAL_MAX;
     e->high = LACONIC_REAL_MAX;
     e->compliance = e->target = R(0);
     return e;
 }
 
-static tree_element *tree_new_hinge_element(tree_part *p, int32_t b, int32_t *index) {
-    *index = p->problem.element_count;
-    return tree_new_element(p, b, &p->problem.hinge_row[b - 1]);
+static tree_bundle *tree_new_bundle(tree_part *p, const tree_body *on) {
+    tree_bundle *b = &p->problem.bundle[p->problem.bundle_count++];
+    b->on = on;
+    b->first = b->end = p->problem.element_count;
+    return b;
 }
 
 static void tree_add_dry(tree_part *p, int32_t b, real bound, real guess) {
-    tree_element *e = tree_new_hinge_element(p, b, &p->hinge[b - 1].dry);
+    tree_element *e = tree_new_element(p, &p->hinge[b - 1].dry);
     e->high = bound;
     e->low = -bound;
     e->q = guess;
@@ -106,7 +109,7 @@ static void tree_add_dry(tree_part *p, int32_t b, real bound, real guess) {
 
 /* Torque start − slope ψ', cut to the limit. */
 static void tree_add_limited(tree_part *p, int32_t b, real start, real slope, real limit, real guess) {
-    tree_element *e = tree_new_hinge_element(p, b, &p->hinge[b - 1].drive);
+    tree_element *e = tree_new_element(p, &p->hinge[b - 1].drive);
     e->high = p->h * limit;
     e->low = -e->high;
     e->compliance = R(1) / (p->h * slope);
@@ -118,18 +121,19 @@ static void tree_add_limited(tree_part *p, int32_t b, real start, real slope, re
 static void tree_add_stops(tree_part *p, int32_t b, const tree_state *s) {
     const tree_body *link = &p->m->body[b];
     const real above = link->stop_high_rad - p->ahead[b - 1], below = link->stop_low_rad - p->ahead[b - 1];
-    tree_element *high = tree_new_hinge_element(p, b, &p->hinge[b - 1].stop);
+    tree_element *high = tree_new_element(p, &p->hinge[b - 1].stop);
     high->low = R(0);
     high->target = above > R(0) ? above / p->h : R(0);
     high->q = p->h * s->stop_Nm[b - 1][0];
-    tree_element *low = tree_new_element(p, b, &p->problem.hinge_row[b - 1]);
+    int32_t follows;
+    tree_element *low = tree_new_element(p, &follows);
     low->high = R(0);
     low->target = below < R(0) ? below / p->h : R(0);
     low->q = p->h * s->stop_Nm[b - 1][1];
 }
 
 static void tree_add_prescribed(tree_part *p, int32_t b, const tree_state *s) {
-    tree_element *e = tree_new_hinge_element(p, b, &p->hinge[b - 1].drive);
+    tree_element *e = tree_new_element(p, &p->hinge[b - 1].drive);
     e->target = p->in->hinged.hinge_rate_rad_per_s[b - 1];
     e->q = p->h * s->drive_Nm[b - 1];
     p->problem.free.hinge[b - 1] += p->m->body[b].padding_kgm2 * e->target;
@@ -176,17 +180,18 @@ static void tree_add_hinge(tree_part *p, int32_t b, const tree_state *s) {
     p->factor.l.node[b - 1].along[link->depth - 1] += h * link->damping_Nms + h * h * spring;
     p->hinge[b - 1].drive = p->hinge[b - 1].dry = p->hinge[b - 1].stop = -1;
     p->hinge[b - 1].torque_Nm = p->hinge[b - 1].slope_Nms = R(0);
+    const tree_bundle *all = tree_new_bundle(p, link);
     if (link->hinge == LACONIC_HINGE_PRESCRIBED) tree_add_prescribed(p, b, s);
     if (link->servo) tree_add_servo(p, b, s);
     if (tree_has_motor(p->m, b)) tree_add_motor(p, b, s);
     if (link->dry_friction_Nm > R(0)) tree_add_dry(p, b, h * link->dry_friction_Nm, h * s->dry_Nm[b - 1]);
     if (link->stops) tree_add_stops(p, b, s);
+    if (all->first == all->end) p->problem.bundle_count--;
 }
 
-INLINE void tree_transform_hinge(tree_part *p, int32_t b, bool star) {
-    const tree_body *link = &p->m->body[b];
-    tree_row *row = &p->problem.hinge_row[b - 1];
-    if (p->hinge[b - 1].drive < 0 && p->hinge[b - 1].dry < 0 && p->hinge[b - 1].stop < 0) return;
+INLINE void tree_transform_hinge(tree_part *p, tree_bundle *b, bool star) {
+    const tree_body *link = b->on;
+    tree_row *row = &b->row;
     row->base = none;
     for (int32_t k = 0; k < link->depth - 1 && !star; k++) row->along[k] = R(0);
     row->along[star ? 0 : link->depth - 1] = R(1);
@@ -223,9 +228,10 @@ static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_stat
     l->drive_limit = driven && a->torque_limit_Nm < LACONIC_REAL_MAX ? p->h * a->torque_limit_Nm : LACONIC_REAL_MAX;
     l->viscous = p->h * a->viscous_Nms;
     l->free_speed = s->wheel_speed_rad_per_s[i] + p->h * p->in->hinged.base.axle_torque_Nm[i] / w->inertia_kgm2;
+    c->push = w->inertia_kgm2 * l->free_speed;
     if (!w->locked) return;
     l->axle = R(2) * w->rim_size * l->grip + w->inertia_kgm2; /* more than the contact can overcome */
-    l->drive = l->drive_slope = l->viscous = l->free_speed = R(0);
+    l->drive = l->drive_slope = l->viscous = l->free_speed = c->push = R(0);
 }
 
 RARE real tree_creep_of(const tree_contact *c, const tree_state *s, int32_t i) {
@@ -236,14 +242,13 @@ RARE real tree_creep_of(const tree_contact *c, const tree_state *s, int32_t i) {
 
 RARE void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
     const laconic_tree_rim *w = &p->m->wheel[i];
-    tree_row *row = &p->problem.scrub_row[i];
     const real bound = p->h * w->friction_coefficient * p->loads.carried_N[i] * w->scrub_radius_m;
     if (!(bound > R(0))) return;
-    p->scrub[i] = p->problem.element_count;
-    tree_element *e = tree_new_element(p, w->body, row);
-    row->base = vector_of(R(0), R(0), R(1));
-    for (int32_t k = 0; k < e->on->depth; k++) row->along[k] = R(1);
-    tree_back_row(row, &p->factor, e->on, false);
+    tree_bundle *b = tree_new_bundle(p, &p->m->body[w->body]);
+    tree_element *e = tree_new_element(p, &p->scrub[i]);
+    b->row.base = vector_of(R(0), R(0), R(1));
+    for (int32_t k = 0; k < b->on->depth; k++) b->row.along[k] = R(1);
+    tree_back_row(&b->row, &p->factor, b->on, false);
     e->high = bound;
     e->low = -bound;
     const real rim_speed = w->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
@@ -267,7 +272,7 @@ INLINE void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i, bool st
 /* --------------------------------------------------------------------------------------- the step -- */
 
 INLINE void tree_build_rows(tree_part *p, const tree_state *s, bool star) {
-    for (int32_t b = 1; b <= p->m->body_count; b++) tree_transform_hinge(p, b, star);
+    for (int32_t b = 0; b < p->problem.bundle_count; b++) tree_transform_hinge(p, &p->problem.bundle[b], star);
     for (int32_t i = 0; i < p->m->wheel_count; i++) tree_add_wheel(p, s, i, star);
 }
 
@@ -277,7 +282,7 @@ static void tree_build(tree_part *p, const tree_state *s) {
     tree_problem *q = &p->problem;
     q->m = p->m;
     q->contact_count = p->m->wheel_count;
-    q->element_count = 0;
+    q->element_count = q->bundle_count = 0;
     for (int32_t b = 1; b <= p->m->body_count; b++) tree_add_hinge(p, b, s);
     laconic_tree_factor(&p->factor, p->m);
     tree_back_vector(&q->free, &p->factor, p->m);
