@@ -13,10 +13,10 @@ typedef struct tree_energies { /* of one part, in J */
 } tree_energies;
 
 static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_state *s) {
+    for (int32_t b = 0; b <= p->pulled; b++) e->outer += p->h * dot(p->pull[b], s->body[b]);
     for (int32_t b = 0; b <= p->m->body_count; b++) {
         const tree_body *link = &p->m->body[b];
         const vector change = minus(s->body[b], p->carried[b]);
-        e->outer += p->h * dot(p->pull[b], s->body[b]);
         e->numerical += R(0.5) * (link->mass_kg * (change.x * change.x + change.y * change.y) +
                                   link->yaw_inertia_kgm2 * change.z * change.z);
     }

@@ -13,46 +13,81 @@
 #define TREE_STIFF_PENALTY R(1e8) /* at first: a pass less than with PENALTY, where contacts keep to stick or slip */
 #endif
 
-INLINE void tree_prepare_contact(tree_contact *c, bool star) {
-    const real *e = c->wheel->rolling;
+static inline real tree_larger(real a, real b) { return b > a ? b : a; }
+
+INLINE void tree_products(tree_contact *c, bool star) {
     c->along = tree_row_product(&c->row[0], &c->row[0], c->on, star);
     c->cross_row = tree_row_product(&c->row[0], &c->row[1], c->on, star);
     c->across = tree_row_product(&c->row[1], &c->row[1], c->on, star);
+}
+
+/* Twice the energy that what drives the wheel gives to its free motion; NaN where a limit is. */
+INLINE real tree_wheel_energy(const tree_contact *c) {
+    const friction_load *l = &c->load;
+    const real push = c->push + drive_at(l, R(0));
+    const real slope = magnitude(l->drive) < l->drive_limit ? l->drive_slope : R(0);
+    return push * push / (c->wheel->inertia_kgm2 + l->viscous + slope) + zero_if_finite(l->drive_limit) +
+           zero_if_finite(l->viscous + l->drive_slope + l->grip + l->axle);
+}
+
+INLINE void tree_prepare_contact(tree_problem *p, tree_contact *c, bool star) {
+    const real *e = c->wheel->rolling, *q = c->impulse;
+    tree_products(c, star);
     c->row_mass[0] = inverse_or_zero(c->along);
     c->row_mass[1] = inverse_or_zero(c->across);
     c->mobility = c->along + c->across + c->wheel->rim_size * c->wheel->rim_size / c->wheel->inertia_kgm2 + c->creep;
     c->inverse_mobility = R(1) / c->mobility;
     c->lateral_mass = c->row_mass[1];
-    if (e[1] == R(0)) return;
-    c->lateral_mass =
-        inverse_or_zero(e[1] * e[1] * c->along - R(2) * e[0] * e[1] * c->cross_row + e[0] * e[0] * c->across);
+    if (e[1] != R(0))
+        c->lateral_mass =
+            inverse_or_zero(e[1] * e[1] * c->along - R(2) * e[0] * e[1] * c->cross_row + e[0] * e[0] * c->across);
+    p->scale += tree_wheel_energy(c);
+    p->stress = tree_larger(p->stress, (q[0] * q[0] + q[1] * q[1]) * c->mobility);
+}
+
+INLINE void tree_stiffen(tree_element *e, real penalty) {
+    e->share = R(1);
+    e->stiffness = penalty;
+    if (e->compliance == R(0)) return;
+    e->share = R(1) / (R(1) + penalty * e->compliance);
+    e->stiffness = penalty * e->share;
 }
 
 void laconic_tree_stiffen(tree_problem *p, real of_mass) {
     p->penalty = of_mass;
-    for (int32_t i = 0; i < p->bundle_count; i++) {
-        const tree_bundle *b = &p->bundle[i];
-        const real penalty = of_mass / b->mobility;
-        for (int32_t j = b->first; j < b->end; j++) {
-            tree_element *e = &p->element[j];
-            e->share = R(1);
-            e->stiffness = penalty;
-            if (e->compliance == R(0)) continue;
-            e->share = R(1) / (R(1) + penalty * e->compliance);
-            e->stiffness = penalty * e->share;
-        }
+    for (int32_t i = 0; i < p->bundle_count; i++)
+        for (int32_t j = p->bundle[i].first; j < p->bundle[i].end; j++)
+            tree_stiffen(&p->element[j], of_mass / p->bundle[i].mobility);
+}
+
+INLINE real tree_element_energy(const tree_element *e, real mobility) {
+    const real finite = zero_if_finite(e->target) + zero_if_finite(e->compliance);
+    if (e->compliance > R(0) && e->high < LACONIC_REAL_MAX) {
+        const real q = cut(e->target / e->compliance, e->high);
+        return q * q * mobility / (R(1) + mobility / e->compliance) + finite;
     }
+    return tree_unbounded(e) ? e->target * e->target / mobility + finite : finite;
+}
+
+INLINE void tree_prepare_element(tree_problem *p, tree_element *e, real mobility, real penalty) {
+    e->all = mobility + e->compliance;
+    e->inverse_all = R(1) / e->all;
+    tree_stiffen(e, penalty);
+    p->scale += tree_element_energy(e, mobility);
+    p->stress = tree_larger(p->stress, e->q * e->q * mobility);
 }
 
 INLINE void tree_prepare_all(tree_problem *p, bool star) {
-    for (int32_t i = 0; i < p->contact_count; i++) tree_prepare_contact(&p->contact[i], star);
+    p->penalty = TREE_STIFF_PENALTY;
+    p->scale = tree_square(&p->free, p->m->body_count);
+    p->stress = R(0);
+    for (int32_t i = 0; i < p->contact_count; i++) tree_prepare_contact(p, &p->contact[i], star);
     for (int32_t i = 0; i < p->bundle_count; i++) {
         tree_bundle *b = &p->bundle[i];
-        b->mobility = tree_row_product(&b->row, &b->row, b->on, star);
-        for (int32_t j = b->first; j < b->end; j++) {
-            p->element[j].all = b->mobility + p->element[j].compliance;
-            p->element[j].inverse_all = R(1) / p->element[j].all;
-        }
+        const real mobility = b->mobility = tree_row_product(&b->row, &b->row, b->on, star);
+        p->scale += zero_if_finite(mobility);
+        for (int32_t j = b->first; j < b->end; j++)
+            tree_prepare_element(p, &p->element[j], mobility, TREE_STIFF_PENALTY / mobility);
     }
 }
 
@@ -63,7 +98,6 @@ void laconic_tree_prepare_problem(tree_problem *p) {
         tree_prepare_all(p, true);
     else
         tree_prepare_deep(p);
-    laconic_tree_stiffen(p, TREE_STIFF_PENALTY);
 }
 
 /* --------------------------------------------------------------------------------- what a pass sees -- */

@@ -12,37 +12,8 @@
 
 /* --------------------------------------------------------------------------------------- the search -- */
 
-/* Twice the energy of the motion without contacts and elements but with what drives them; NaN where a limit is. */
-static real tree_free_energy(const tree_problem *p) {
-    real energy = tree_square(&p->free, p->m->body_count);
-    for (int32_t i = 0; i < p->contact_count; i++) {
-        const friction_load *l = &p->contact[i].load;
-        const real inertia = p->contact[i].wheel->inertia_kgm2, drive = drive_at(l, R(0));
-        const real push = p->contact[i].push + drive;
-        const real slope = magnitude(l->drive) < l->drive_limit ? l->drive_slope : R(0);
-        energy += push * push / (inertia + l->viscous + slope);
-        energy += zero_if_finite(l->viscous) + zero_if_finite(l->drive_slope);
-        energy += zero_if_finite(l->grip) + zero_if_finite(l->axle) + zero_if_finite(l->drive_limit);
-    }
-    for (int32_t i = 0; i < p->bundle_count; i++) {
-        const tree_bundle *b = &p->bundle[i];
-        energy += zero_if_finite(b->mobility);
-        for (int32_t j = b->first; j < b->end; j++) {
-            const tree_element *e = &p->element[j];
-            energy += zero_if_finite(e->target) + zero_if_finite(e->compliance);
-            if (e->compliance > R(0) && e->high < LACONIC_REAL_MAX) {
-                const real q = cut(e->target / e->compliance, e->high);
-                energy += q * q * b->mobility / (R(1) + b->mobility / e->compliance);
-            } else if (tree_unbounded(e)) {
-                energy += e->target * e->target / b->mobility;
-            }
-        }
-    }
-    return energy;
-}
-
 /* Contacts and elements that hold each other with many times the free motion would drown the speeds in rounding. */
-static void tree_forget_stress(tree_problem *p) {
+RARE void tree_forget_stress(tree_problem *p) {
     const real most = MOST_STRESS * p->scale;
     for (int32_t i = 0; i < p->contact_count; i++) {
         real *q = p->contact[i].impulse;
@@ -259,10 +230,9 @@ int32_t laconic_tree_solve(tree_problem *p) {
     tree_search at;
     int32_t passes = 0;
     at.p = p;
-    p->scale = tree_free_energy(p);
     if (!is_finite(p->scale)) return 0;
     if (p->scale < SMALLEST_ENERGY) return tree_nothing(p);
-    tree_forget_stress(p);
+    if (p->stress > MOST_STRESS * p->scale) tree_forget_stress(p);
     laconic_tree_follow(p);
     if (!tree_pass_exactly(&at, EXACT_PASSES, &passes) && !tree_search_along_path(&at, &passes)) return 0;
     tree_snap(p);

@@ -47,7 +47,8 @@ typedef struct tree_bundle {
 typedef struct tree_problem {
     const tree_model *m;
     tree_vector free, nu;
-    real scale;   /* twice the energy of the free motion       */
+    real scale;   /* twice the energy of the motion without contacts and elements, but with what drives them */
+    real stress;  /* largest twice the energy that the guess of one impulse or q would give     */
     real penalty; /* stiffness where something holds, over its mass */
     int32_t contact_count, element_count, bundle_count;
     tree_contact contact[TREE_WHEELS];
@@ -55,7 +56,7 @@ typedef struct tree_problem {
     tree_bundle bundle[TREE_HINGES + TREE_WHEELS];
 } tree_problem;
 
-/* Fills what contacts and elements need besides rows, loads, bounds and targets. */
+/* Fills what contacts and elements need besides rows, loads, bounds, targets and guesses, scale and stress. */
 void laconic_tree_prepare_problem(tree_problem *p);
 
 /* Finds nu, speeds, impulses and q. Returns the number of passes; 0: refused, as friction_solver.h states. */

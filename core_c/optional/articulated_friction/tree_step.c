@@ -48,11 +48,12 @@ static vector tree_seen(direction heading, const real world[2]) {
                      heading.cosine * world[1] - heading.sine * world[0], R(0));
 }
 
-/* Outer forces and the slope's pull on each body, about its centre of mass. */
+/* Outer forces and the slope's pull on each body that is pulled, about its centre of mass. */
 static void tree_pull(tree_part *p, const tree_state *s) {
     const laconic_input *in = &p->in->hinged.base;
     const bool world = in->world_force_N[0] != R(0) || in->world_force_N[1] != R(0);
-    for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = none;
+    p->pulled = p->m->sloped ? p->m->body_count : 0;
+    for (int32_t b = 1; b <= p->pulled; b++) p->pull[b] = none;
     p->pull[0] = vector_of(in->body_force_N[0], in->body_force_N[1], in->body_moment_Nm);
     p->end = direction_with(R(1), R(0));
     if (!world && !p->m->sloped) return;
@@ -61,14 +62,13 @@ static void tree_pull(tree_part *p, const tree_state *s) {
     const vector force = tree_seen(p->end, in->world_force_N), down = tree_seen(p->end, p->m->pull_m_per_s2);
     p->pull[0] = plus(p->pull[0], force);
     p->pull[0].z += in->world_force_point_m[0] * force.y - in->world_force_point_m[1] * force.x;
-    for (int32_t b = 0; b <= p->m->body_count; b++) p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));
+    for (int32_t b = 0; b <= p->pulled; b++) p->pull[b] = plus(p->pull[b], scaled(p->m->body[b].mass_kg, down));
 }
 
-static vector tree_momentum(const tree_part *p, int32_t b) {
+INLINE vector tree_momentum(const tree_part *p, int32_t b) {
     const tree_body *link = &p->m->body[b];
-    const vector v = p->carried[b], f = p->pull[b];
-    return vector_of(link->mass_kg * v.x + p->h * f.x, link->mass_kg * v.y + p->h * f.y,
-                     link->yaw_inertia_kgm2 * v.z + p->h * f.z);
+    const vector v = p->carried[b];
+    return vector_of(link->mass_kg * v.x, link->mass_kg * v.y, link->yaw_inertia_kgm2 * v.z);
 }
 
 /* Jᵀ (m V + h force) into free; M into the factor's place. */
@@ -76,79 +76,67 @@ static void tree_find_momenta(tree_part *p) {
     vector momentum[TREE_BODIES];
     momentum[0] = tree_momentum(p, 0);
     for (int32_t b = 1; b <= p->m->body_count; b++) momentum[b] = tree_momentum(p, b);
+    for (int32_t b = 0; b <= p->pulled; b++) momentum[b] = plus(momentum[b], scaled(p->h, p->pull[b]));
     tree_gather(&p->problem.free, &p->at, p->m, momentum);
     tree_mass(&p->factor.l, &p->at, p->m);
 }
 
 /* ------------------------------------------------------------------------------------------ hinges -- */
 
-static tree_element *tree_new_element(tree_part *p, int32_t *index) {
-    tree_problem *q = &p->problem;
+/* An element of the last bundle. Returns its number. */
+INLINE int32_t tree_new_element(tree_problem *q, real low, real high, real compliance, real target, real guess) {
     tree_element *e = &q->element[q->element_count];
-    *index = q->element_count++;
-    q->bundle[q->bundle_count - 1].end = q->element_count;
-    e->low = -LACONIC_REAL_MAX;
-    e->high = LACONIC_REAL_MAX;
-    e->compliance = e->target = R(0);
-    return e;
+    e->low = low;
+    e->high = high;
+    e->compliance = compliance;
+    e->target = target;
+    e->q = guess;
+    return q->element_count++;
 }
 
-static tree_bundle *tree_new_bundle(tree_part *p, const tree_body *on) {
-    tree_bundle *b = &p->problem.bundle[p->problem.bundle_count++];
+INLINE tree_bundle *tree_new_bundle(tree_problem *q, const tree_body *on) {
+    tree_bundle *b = &q->bundle[q->bundle_count];
     b->on = on;
-    b->first = b->end = p->problem.element_count;
+    b->first = q->element_count;
     return b;
 }
 
-static void tree_add_dry(tree_part *p, int32_t b, real bound, real guess) {
-    tree_element *e = tree_new_element(p, &p->hinge[b - 1].dry);
-    e->high = bound;
-    e->low = -bound;
-    e->q = guess;
-}
-
-/* Torque start − slope ψ', cut to the limit. */
-static void tree_add_limited(tree_part *p, int32_t b, real start, real slope, real limit, real guess) {
-    tree_element *e = tree_new_element(p, &p->hinge[b - 1].drive);
-    e->high = p->h * limit;
-    e->low = -e->high;
-    e->compliance = R(1) / (p->h * slope);
-    e->target = start / slope;
-    e->q = guess;
+/* Keeps the bundle if it has elements. */
+INLINE void tree_close_bundle(tree_problem *q, tree_bundle *b) {
+    b->end = q->element_count;
+    if (b->end > b->first) q->bundle_count++;
 }
 
 /* A gap that ψ^ has passed, by rounding or a larger step than the last, counts as 0: a stop never throws. */
 static void tree_add_stops(tree_part *p, int32_t b, const tree_state *s) {
     const tree_body *link = &p->m->body[b];
     const real above = link->stop_high_rad - p->ahead[b - 1], below = link->stop_low_rad - p->ahead[b - 1];
-    tree_element *high = tree_new_element(p, &p->hinge[b - 1].stop);
-    high->low = R(0);
-    high->target = above > R(0) ? above / p->h : R(0);
-    high->q = p->h * s->stop_Nm[b - 1][0];
-    int32_t follows;
-    tree_element *low = tree_new_element(p, &follows);
-    low->high = R(0);
-    low->target = below < R(0) ? below / p->h : R(0);
-    low->q = p->h * s->stop_Nm[b - 1][1];
+    const real *torque_Nm = s->stop_Nm[b - 1];
+    p->hinge[b - 1].stop = tree_new_element(&p->problem, R(0), LACONIC_REAL_MAX, R(0),
+                                            above > R(0) ? above / p->h : R(0), p->h * torque_Nm[0]);
+    (void)tree_new_element(&p->problem, -LACONIC_REAL_MAX, R(0), R(0), below < R(0) ? below / p->h : R(0),
+                           p->h * torque_Nm[1]);
 }
 
 static void tree_add_prescribed(tree_part *p, int32_t b, const tree_state *s) {
-    tree_element *e = tree_new_element(p, &p->hinge[b - 1].drive);
-    e->target = p->in->hinged.hinge_rate_rad_per_s[b - 1];
-    e->q = p->h * s->drive_Nm[b - 1];
-    p->problem.free.hinge[b - 1] += p->m->body[b].padding_kgm2 * e->target;
+    const real rate = p->in->hinged.hinge_rate_rad_per_s[b - 1];
+    p->hinge[b - 1].drive = tree_new_element(&p->problem, -LACONIC_REAL_MAX, LACONIC_REAL_MAX, R(0), rate,
+                                             p->h * s->drive_Nm[b - 1]);
+    p->problem.free.hinge[b - 1] += p->m->body[b].padding_kgm2 * rate;
 }
 
-/* A drive's torque start − slope ψ': with a limit an element, else part of the matrix. */
+/* A drive's torque start − slope ψ', cut to the limit: with both an element, else part of the matrix. */
 static void tree_drive_hinge(tree_part *p, int32_t b, real start, real slope, real limit, const tree_state *s) {
+    tree_hinge_part *hinge = &p->hinge[b - 1];
     const bool limited = limit < LACONIC_REAL_MAX;
     if (limited && slope > R(0)) {
-        tree_add_limited(p, b, start, slope, limit, p->h * s->drive_Nm[b - 1]);
+        hinge->drive = tree_new_element(&p->problem, -p->h * limit, p->h * limit, R(1) / (p->h * slope), start / slope,
+                                        p->h * s->drive_Nm[b - 1]);
         return;
     }
-    p->hinge[b - 1].torque_Nm = limited ? cut(start, limit) : start;
-    p->hinge[b - 1].slope_Nms = slope;
-    p->problem.free.hinge[b - 1] += p->h * p->hinge[b - 1].torque_Nm;
+    hinge->torque_Nm = limited ? cut(start, limit) : start;
+    hinge->slope_Nms = slope;
+    p->problem.free.hinge[b - 1] += p->h * hinge->torque_Nm;
     p->factor.l.node[b - 1].along[p->m->body[b].depth - 1] += p->h * slope;
 }
 
@@ -173,20 +161,21 @@ static void tree_add_motor(tree_part *p, int32_t b, const tree_state *s) {
 
 static void tree_add_hinge(tree_part *p, int32_t b, const tree_state *s) {
     const tree_body *link = &p->m->body[b];
-    const real spring = link->stiffness_Nm, h = p->h;
+    tree_hinge_part *hinge = &p->hinge[b - 1];
+    tree_bundle *elements = tree_new_bundle(&p->problem, link);
+    const real spring = link->stiffness_Nm, h = p->h, bound = h * link->dry_friction_Nm;
     real torque = p->in->hinged.hinge_torque_Nm[b - 1];
     if (spring > R(0)) torque += spring * (link->rest_rad - p->ahead[b - 1]);
     p->problem.free.hinge[b - 1] += h * torque;
-    p->factor.l.node[b - 1].along[link->depth - 1] += h * link->damping_Nms + h * h * spring;
-    p->hinge[b - 1].drive = p->hinge[b - 1].dry = p->hinge[b - 1].stop = -1;
-    p->hinge[b - 1].torque_Nm = p->hinge[b - 1].slope_Nms = R(0);
-    const tree_bundle *all = tree_new_bundle(p, link);
+    p->factor.l.node[b - 1].along[link->depth - 1] += h * (link->damping_Nms + h * spring);
+    hinge->drive = hinge->dry = hinge->stop = -1;
+    hinge->torque_Nm = hinge->slope_Nms = R(0);
     if (link->hinge == LACONIC_HINGE_PRESCRIBED) tree_add_prescribed(p, b, s);
     if (link->servo) tree_add_servo(p, b, s);
     if (tree_has_motor(p->m, b)) tree_add_motor(p, b, s);
-    if (link->dry_friction_Nm > R(0)) tree_add_dry(p, b, h * link->dry_friction_Nm, h * s->dry_Nm[b - 1]);
+    if (bound > R(0)) hinge->dry = tree_new_element(&p->problem, -bound, bound, R(0), R(0), h * s->dry_Nm[b - 1]);
     if (link->stops) tree_add_stops(p, b, s);
-    if (all->first == all->end) p->problem.bundle_count--;
+    tree_close_bundle(&p->problem, elements);
 }
 
 INLINE void tree_transform_hinge(tree_part *p, tree_bundle *b, bool star) {
@@ -244,17 +233,15 @@ RARE void tree_add_scrub(tree_part *p, const tree_state *s, int32_t i) {
     const laconic_tree_rim *w = &p->m->wheel[i];
     const real bound = p->h * w->friction_coefficient * p->loads.carried_N[i] * w->scrub_radius_m;
     if (!(bound > R(0))) return;
-    tree_bundle *b = tree_new_bundle(p, &p->m->body[w->body]);
-    tree_element *e = tree_new_element(p, &p->scrub[i]);
+    tree_bundle *b = tree_new_bundle(&p->problem, &p->m->body[w->body]);
+    const real rim_speed = w->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
+    const bool fades = w->scrub_fade_m > R(0) && rim_speed > TREE_STANDING_M_PER_S;
     b->row.base = vector_of(R(0), R(0), R(1));
     for (int32_t k = 0; k < b->on->depth; k++) b->row.along[k] = R(1);
     tree_back_row(&b->row, &p->factor, b->on, false);
-    e->high = bound;
-    e->low = -bound;
-    const real rim_speed = w->radius_m * magnitude(s->wheel_speed_rad_per_s[i]);
-    if (w->scrub_fade_m > R(0) && rim_speed > TREE_STANDING_M_PER_S)
-        e->compliance = rim_speed / (w->scrub_fade_m * bound);
-    e->q = p->h * s->scrub_Nm[i];
+    p->scrub[i] = tree_new_element(&p->problem, -bound, bound, fades ? rim_speed / (w->scrub_fade_m * bound) : R(0),
+                                   R(0), p->h * s->scrub_Nm[i]);
+    tree_close_bundle(&p->problem, b);
 }
 
 INLINE void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i, bool star) {
@@ -360,18 +347,15 @@ RARE laconic_status tree_refuse_input(const tree_model *m, const laconic_tree_in
     return status == LACONIC_OK ? tree_finite(h->base.body_moment_Nm, LACONIC_FIELD_BODY_MOMENT, 0, why) : status;
 }
 
-/* 0, or NaN where a number is not finite. */
-static real tree_check_of(const tree_model *m, const laconic_tree_input *in) {
+/* Not finite where a number is not; or where finite ones are so large that their sum is not. */
+static real tree_sum_of(const tree_model *m, const laconic_tree_input *in) {
     const laconic_input *base = &in->hinged.base;
-    real sum = zero_if_finite(base->body_force_N[0]) + zero_if_finite(base->body_force_N[1]) +
-               zero_if_finite(base->body_moment_Nm) + zero_if_finite(base->world_force_N[0]) +
-               zero_if_finite(base->world_force_N[1]) + zero_if_finite(base->world_force_point_m[0]) +
-               zero_if_finite(base->world_force_point_m[1]);
-    for (int32_t i = 0; i < m->wheel_count; i++)
-        sum += zero_if_finite(base->voltage_V[i]) + zero_if_finite(base->axle_torque_Nm[i]);
+    real sum = base->body_force_N[0] + base->body_force_N[1] + base->body_moment_Nm + base->world_force_N[0] +
+               base->world_force_N[1] + base->world_force_point_m[0] + base->world_force_point_m[1];
+    for (int32_t i = 0; i < m->wheel_count; i++) sum += base->voltage_V[i] + base->axle_torque_Nm[i];
     for (int32_t b = 0; b < m->body_count; b++)
-        sum += zero_if_finite(in->hinged.hinge_voltage_V[b]) + zero_if_finite(in->hinged.hinge_torque_Nm[b]) +
-               zero_if_finite(in->hinged.hinge_rate_rad_per_s[b]) + zero_if_finite(in->hinge_angle_rad[b]);
+        sum += in->hinged.hinge_voltage_V[b] + in->hinged.hinge_torque_Nm[b] + in->hinged.hinge_rate_rad_per_s[b] +
+               in->hinge_angle_rad[b];
     return sum;
 }
 
@@ -380,7 +364,10 @@ static laconic_status tree_check_step(const tree_model *m, real step_s, const tr
     bool room = heading_has_room(&s->heading);
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
-    if (!(tree_check_of(m, held) == R(0))) return tree_refuse_input(m, held, why);
+    if (!is_finite(tree_sum_of(m, held))) {
+        const laconic_status status = tree_refuse_input(m, held, why);
+        if (status != LACONIC_OK) return status;
+    }
     for (int32_t b = 0; b < m->body_count; b++) room = room && heading_has_room(&s->hinge[b]);
     return room ? LACONIC_OK : refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
 }

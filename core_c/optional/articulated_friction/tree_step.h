@@ -41,6 +41,7 @@ typedef struct tree_part {
     tree_posture at;
     direction end;               /* heading of body 0 at the end; a local would cost 120 instructions more */
     vector carried[TREE_BODIES]; /* the bodies' velocities, in the axes at the end               */
+    int32_t pulled;              /* the last body that is pulled                                 */
     vector pull[TREE_BODIES];    /* forces and moments from outside, axes at the end             */
     real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */
     tree_place_of_wheel place[TREE_WHEELS];
