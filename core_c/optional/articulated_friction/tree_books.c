@@ -54,29 +54,28 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     sum_add(&s->wheel_angle_rad[i], R(0.5) * p->h * (old + speed));
     s->wheel_speed_rad_per_s[i] = speed;
     s->scrub_Nm[i] = R(0);
-    if (p->scrub[i] < 0) return;
-    const tree_element *scrub = &p->problem.element[p->scrub[i]];
-    s->scrub_Nm[i] = scrub->q / p->h;
-    e->scrub += scrub->q * s->body[w->body].z;
+    if (p->scrub[i] == NULL) return;
+    s->scrub_Nm[i] = p->scrub[i]->q / p->h;
+    e->scrub += p->scrub[i]->q * s->body[w->body].z;
 }
 
 /* Torque on the body that servo, motor or prescribed rate gave. */
 static real tree_drive_torque(const tree_part *p, tree_state *s, int32_t b) {
     const tree_hinge_part *hinge = &p->hinge[b - 1];
     s->drive_Nm[b - 1] = R(0);
-    if (hinge->drive < 0) return hinge->torque_Nm - hinge->slope_Nms * p->z[2 + b];
-    s->drive_Nm[b - 1] = p->problem.element[hinge->drive].q / p->h;
+    if (hinge->drive == NULL) return hinge->torque_Nm - hinge->slope_Nms * p->z[2 + b];
+    s->drive_Nm[b - 1] = hinge->drive->q / p->h;
     return -s->drive_Nm[b - 1];
 }
 
 static void tree_enter_drive(tree_energies *e, const tree_part *p, tree_state *s, int32_t b) {
-    const int32_t axis = p->m->wheel_count + b - 1, drive = p->hinge[b - 1].drive;
+    const int32_t axis = p->m->wheel_count + b - 1;
     const real torque = tree_drive_torque(p, s, b), rate = p->z[2 + b];
     if (tree_has_motor(p->m, b)) {
         tree_enter_motor(e, p, s, axis, rate);
         return;
     }
-    const bool at_limit = p->m->body[b].servo && drive >= 0 && magnitude(torque) >= p->m->body[b].servo_limit_Nm;
+    const bool at_limit = p->m->body[b].servo && p->hinge[b - 1].drive != NULL && magnitude(torque) >= p->m->body[b].servo_limit_Nm;
     s->motor_torque_Nm[axis] = torque;
     s->limit[axis] = (int32_t)(at_limit ? LACONIC_LIMIT_CURRENT : LACONIC_LIMIT_NONE);
     e->servo += p->h * torque * rate;
@@ -94,20 +93,19 @@ static void tree_enter_spring(tree_energies *e, const tree_part *p, int32_t b) {
 
 static void tree_enter_hinge(tree_energies *e, const tree_part *p, tree_state *s, int32_t b) {
     const tree_hinge_part *hinge = &p->hinge[b - 1];
-    const tree_element *elements = p->problem.element;
     const real rate = p->z[2 + b];
     tree_enter_drive(e, p, s, b);
     tree_enter_spring(e, p, b);
     e->outer += p->h * p->in->hinged.hinge_torque_Nm[b - 1] * rate;
     e->hinge += p->h * p->m->body[b].damping_Nms * rate * rate;
     s->dry_Nm[b - 1] = s->stop_Nm[b - 1][0] = s->stop_Nm[b - 1][1] = R(0);
-    if (hinge->dry >= 0) {
-        s->dry_Nm[b - 1] = elements[hinge->dry].q / p->h;
-        e->hinge += elements[hinge->dry].q * rate;
+    if (hinge->dry != NULL) {
+        s->dry_Nm[b - 1] = hinge->dry->q / p->h;
+        e->hinge += hinge->dry->q * rate;
     }
-    for (int k = 0; hinge->stop >= 0 && k < 2; k++) {
-        s->stop_Nm[b - 1][k] = elements[hinge->stop + k].q / p->h;
-        e->stop += elements[hinge->stop + k].q * rate;
+    for (int k = 0; hinge->stop != NULL && k < 2; k++) {
+        s->stop_Nm[b - 1][k] = hinge->stop[k].q / p->h;
+        e->stop += hinge->stop[k].q * rate;
     }
 }
 

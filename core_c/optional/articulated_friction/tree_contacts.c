@@ -56,8 +56,8 @@ INLINE void tree_stiffen(tree_element *e, real penalty) {
 void laconic_tree_stiffen(tree_problem *p, real of_mass) {
     p->penalty = of_mass;
     for (int32_t i = 0; i < p->bundle_count; i++)
-        for (int32_t j = p->bundle[i].first; j < p->bundle[i].end; j++)
-            tree_stiffen(&p->element[j], of_mass / p->bundle[i].mobility);
+        for (tree_element *e = p->bundle[i].first; e < p->bundle[i].end; e++)
+            tree_stiffen(e, of_mass / p->bundle[i].mobility);
 }
 
 INLINE real tree_element_energy(const tree_element *e, real mobility) {
@@ -86,8 +86,8 @@ INLINE void tree_prepare_all(tree_problem *p, bool star) {
         tree_bundle *b = &p->bundle[i];
         const real mobility = b->mobility = tree_row_product(&b->row, &b->row, b->on, star);
         p->scale += zero_if_finite(mobility);
-        for (int32_t j = b->first; j < b->end; j++)
-            tree_prepare_element(p, &p->element[j], mobility, TREE_STIFF_PENALTY / mobility);
+        for (tree_element *e = b->first; e < b->end; e++)
+            tree_prepare_element(p, e, mobility, TREE_STIFF_PENALTY / mobility);
     }
 }
 
@@ -110,7 +110,8 @@ RARE real tree_beyond_grip(const tree_contact *c) {
 }
 
 /* Returns the axle's part of the residual, squared. */
-INLINE real tree_see_axle(tree_sight *restrict s, const tree_contact *c) {
+INLINE real tree_see_axle(tree_contact *c) {
+    tree_sight *s = &c->sight;
     const friction_load *l = &c->load;
     const real *rim = c->wheel->rim, inertia = c->wheel->inertia_kgm2, speed = c->speed;
     const real pushed =
@@ -122,7 +123,8 @@ INLINE real tree_see_axle(tree_sight *restrict s, const tree_contact *c) {
 }
 
 /* The slip that no wheel gives way to, squared, over its mobility: light wheels would hide it otherwise. */
-INLINE real tree_firm(const tree_sight *s, const tree_contact *c, real x, real y) {
+INLINE real tree_firm(const tree_contact *c, real x, real y) {
+    const tree_sight *s = &c->sight;
     const real *e = c->wheel->rolling, lateral = e[0] * y - e[1] * x;
     const real firm =
         s->locked ? x * x * c->row_mass[0] + y * y * c->row_mass[1] : lateral * lateral * c->lateral_mass;
@@ -132,7 +134,8 @@ INLINE real tree_firm(const tree_sight *s, const tree_contact *c, real x, real y
 }
 
 /* Returns the square of the contact's residual. */
-INLINE real tree_see(tree_sight *restrict s, const tree_contact *c) {
+INLINE real tree_see(tree_contact *c) {
+    tree_sight *s = &c->sight;
     const real *rim = c->wheel->rim, *p = c->impulse, grip = c->load.grip;
     real x = c->moved[0] - rim[0] * c->speed, y = c->moved[1] - rim[1] * c->speed;
     if (c->creep > R(0)) {
@@ -154,42 +157,40 @@ INLINE real tree_see(tree_sight *restrict s, const tree_contact *c) {
             off_y = grip / length * t_y - p[1];
         }
     }
-    const real rest = tree_see_axle(s, c);
-    if (!beyond) s->firm = tree_firm(s, c, x, y);
+    const real rest = tree_see_axle(c);
+    if (!beyond) s->firm = tree_firm(c, x, y);
     return rest + (off_x * off_x + off_y * off_y + HIDDEN * HIDDEN * size) * c->mobility + s->firm;
 }
 
 /* The same of an element with x; its law for the pass follows at once. */
-INLINE real tree_see_element(tree_element_law *restrict law, const tree_element *e, real x) {
-    const real away = x - e->target, off = (away - e->compliance * e->q) * e->inverse_all, t = e->q + off;
+INLINE real tree_see_element(tree_element *e, real x) {
+    const real q = e->q, away = x - e->target, off = (away - e->compliance * q) * e->inverse_all, t = q + off;
     real change = off;
     if (t > e->low && t < e->high) {
-        law->stiffness = e->stiffness;
-        law->q = e->share * e->q + e->stiffness * away;
+        e->law_stiffness = e->stiffness;
+        e->law_q = e->share * q + e->stiffness * away;
     } else {
-        law->stiffness = R(0);
-        law->q = t >= e->high ? e->high : e->low;
-        change = law->q - e->q;
+        e->law_stiffness = R(0);
+        e->law_q = t >= e->high ? e->high : e->low;
+        change = e->law_q - q;
     }
-    return (change * change + HIDDEN * HIDDEN * e->q * e->q) * e->all;
+    return (change * change + HIDDEN * HIDDEN * q * q) * e->all;
 }
 
-real laconic_tree_see(tree_search *at) {
-    const tree_problem *p = at->p;
+real laconic_tree_see(tree_problem *p) {
     real residual = R(0);
-    for (int32_t i = 0; i < p->contact_count; i++) residual += tree_see(&at->sight[i], &p->contact[i]);
-    for (int32_t i = 0; i < p->bundle_count; i++) {
-        const tree_bundle *b = &p->bundle[i];
-        for (int32_t j = b->first; j < b->end; j++)
-            residual += tree_see_element(&at->element[j], &p->element[j], b->moved);
-    }
+    for (tree_contact *c = p->contact; c < p->contact + p->contact_count; c++) residual += tree_see(c);
+    for (tree_bundle *b = p->bundle; b < p->bundle + p->bundle_count; b++)
+        for (tree_element *e = b->first; e < b->end; e++) residual += tree_see_element(e, b->moved);
     return residual;
 }
 
 /* ------------------------------------------------------------------------------- laws of an exact pass -- */
 
 /* Along n the impulse is the grip; across n it turns with the slip. */
-INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
+INLINE void tree_slips(tree_contact *c, real penalty) {
+    const tree_sight *s = &c->sight;
+    tree_law *law = &c->law;
     const real *rims = c->wheel->rim, grip = c->load.grip, inertia = c->wheel->inertia_kgm2;
     const real n_x = s->t[0] / s->length, n_y = s->t[1] / s->length;
     const real rim = n_x * rims[1] - n_y * rims[0], moved = n_x * c->moved[1] - n_y * c->moved[0];
@@ -219,7 +220,8 @@ INLINE void tree_slips(tree_law *restrict law, const tree_sight *s, const tree_c
     law->turn[1] = turn * n_x;
 }
 
-INLINE void tree_stays_locked(tree_law *restrict law, const tree_contact *c, real penalty) {
+INLINE void tree_stays_locked(tree_contact *c, real penalty) {
+    tree_law *law = &c->law;
     law->along = penalty * c->row_mass[0];
     law->across = penalty * c->row_mass[1];
     law->axis[1] = law->speed = law->turn[0] = law->turn[1] = R(0);
@@ -227,7 +229,9 @@ INLINE void tree_stays_locked(tree_law *restrict law, const tree_contact *c, rea
     law->impulse[1] = c->impulse[1] + law->across * c->moved[1];
 }
 
-INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_contact *c, real penalty) {
+INLINE void tree_rolls(tree_contact *c, real penalty) {
+    const tree_sight *s = &c->sight;
+    tree_law *law = &c->law;
     const real *e = c->wheel->rolling, size = c->wheel->rim_size;
     const friction_load *l = &c->load;
     const real own = c->wheel->inertia_kgm2 + l->viscous, speed = (e[0] * c->moved[0] + e[1] * c->moved[1]) / size;
@@ -249,7 +253,8 @@ INLINE void tree_rolls(tree_law *restrict law, const tree_sight *s, const tree_c
 }
 
 /* Below its limit a tyre that creeps has the slip creep · impulse, in both directions; the wheel turns as it may. */
-static void tree_creeps(tree_law *restrict law, const tree_contact *c, real penalty) {
+static void tree_creeps(tree_contact *c, real penalty) {
+    tree_law *law = &c->law;
     const real *rim = c->wheel->rim, inertia = c->wheel->inertia_kgm2;
     real stiff[2], held[2], pulled[2];
     for (int m = 0; m < 2; m++) {
@@ -272,18 +277,19 @@ static void tree_creeps(tree_law *restrict law, const tree_contact *c, real pena
                        stiff[1] * (own + yields * pulled[0] * rim[0]) / all);
 }
 
-static void tree_take_law(tree_law *law, const tree_sight *s, const tree_contact *c, real penalty) {
-    if (s->length > R(0))
-        tree_slips(law, s, c, penalty);
+static void tree_take_law(tree_contact *c, real penalty) {
+    if (c->sight.length > R(0))
+        tree_slips(c, penalty);
     else if (c->creep > R(0))
-        tree_creeps(law, c, penalty);
-    else if (s->locked)
-        tree_stays_locked(law, c, penalty);
+        tree_creeps(c, penalty);
+    else if (c->sight.locked)
+        tree_stays_locked(c, penalty);
     else
-        tree_rolls(law, s, c, penalty);
+        tree_rolls(c, penalty);
 }
 
-INLINE void tree_move_contact(tree_contact *c, const tree_law *law) {
+INLINE void tree_move_contact(tree_contact *c) {
+    const tree_law *law = &c->law;
     const real x = law->slip[0], y = law->slip[1], *axis = law->axis, *other = law->other;
     c->speed = law->speed + law->turn[0] * x + law->turn[1] * y;
     if (axis[1] == R(0)) {
@@ -300,12 +306,11 @@ INLINE void tree_move_contact(tree_contact *c, const tree_law *law) {
     c->impulse[1] += other[1] * across;
 }
 
-void laconic_tree_exact_pass(tree_search *at) {
-    tree_problem *p = at->p;
-    tree_law laws[TREE_WHEELS];
-    for (int32_t i = 0; i < p->contact_count; i++) tree_take_law(&laws[i], &at->sight[i], &p->contact[i], p->penalty);
-    laconic_tree_move(p, laws, at->element);
-    for (int32_t i = 0; i < p->contact_count; i++) tree_move_contact(&p->contact[i], &laws[i]);
+void laconic_tree_exact_pass(tree_problem *p) {
+    tree_contact *const beyond = p->contact + p->contact_count;
+    for (tree_contact *c = p->contact; c < beyond; c++) tree_take_law(c, p->penalty);
+    laconic_tree_move(p);
+    for (tree_contact *c = p->contact; c < beyond; c++) tree_move_contact(c);
 }
 
 #endif

@@ -52,7 +52,8 @@ INLINE void tree_add_square(tree_matrix *k, const tree_row *row, real stiffness,
     tree_add_product(k, &part, row, on, star);
 }
 
-INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, const tree_law *law, bool star) {
+INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, bool star) {
+    const tree_law *law = &c->law;
     const int32_t depth = tree_depth(c->on, star);
     tree_row part;
     part.along[0] = R(0); /* else compilers doubt it */
@@ -82,12 +83,11 @@ void laconic_tree_split(tree_law *law, real xx, real xy, real yy) {
     law->other[1] = first ? R(1) : R(0);
 }
 
-INLINE void tree_add_bundle(tree_matrix *k, tree_vector *rest, const tree_bundle *b, const tree_element_law laws[],
-                            bool star) {
+INLINE void tree_add_bundle(tree_matrix *k, tree_vector *rest, const tree_bundle *b, bool star) {
     real q = R(0), stiffness = R(0);
-    for (int32_t i = b->first; i < b->end; i++) {
-        q += laws[i].q;
-        stiffness += laws[i].stiffness;
+    for (const tree_element *e = b->first; e < b->end; e++) {
+        q += e->law_q;
+        stiffness += e->law_stiffness;
     }
     tree_subtract(rest, &b->row, q, b->on, star);
     if (stiffness > R(0)) tree_add_square(k, &b->row, stiffness, b->on, star);
@@ -146,38 +146,38 @@ INLINE void tree_difference(tree_vector *rest, const tree_problem *p) {
     for (int32_t j = 0; j < p->m->body_count; j++) rest->hinge[j] = p->free.hinge[j] - p->nu.hinge[j];
 }
 
-INLINE void tree_move_on(tree_problem *p, tree_law laws[], const tree_element_law elements[], bool star) {
+INLINE void tree_move_bundle(tree_bundle *b, const tree_vector *by, bool star) {
+    const real x = tree_dot(&b->row, b->on, by, star);
+    b->moved += x;
+    for (tree_element *e = b->first; e < b->end; e++) e->q = e->law_q + e->law_stiffness * x;
+}
+
+INLINE void tree_move_on(tree_problem *p, bool star) {
+    tree_contact *const beyond = p->contact + p->contact_count;
+    tree_bundle *const last = p->bundle + p->bundle_count;
     tree_matrix k;
     tree_vector by;
     tree_unit_matrix(&k, p->m, star);
     tree_difference(&by, p);
-    for (int32_t i = 0; i < p->contact_count; i++) tree_add_contact(&k, &by, &p->contact[i], &laws[i], star);
-    for (int32_t i = 0; i < p->bundle_count; i++) tree_add_bundle(&k, &by, &p->bundle[i], elements, star);
+    for (const tree_contact *c = p->contact; c < beyond; c++) tree_add_contact(&k, &by, c, star);
+    for (const tree_bundle *b = p->bundle; b < last; b++) tree_add_bundle(&k, &by, b, star);
     tree_solve_equations(&k, &by, p->m, star);
     tree_add(&p->nu, &by, p->m->body_count);
-    for (int32_t i = 0; i < p->contact_count; i++) {
-        tree_contact *c = &p->contact[i];
-        tree_dot_both(laws[i].slip, c->row, c->on, &by, star);
-        c->moved[0] += laws[i].slip[0];
-        c->moved[1] += laws[i].slip[1];
+    for (tree_contact *c = p->contact; c < beyond; c++) {
+        tree_dot_both(c->law.slip, c->row, c->on, &by, star);
+        c->moved[0] += c->law.slip[0];
+        c->moved[1] += c->law.slip[1];
     }
-    for (int32_t i = 0; i < p->bundle_count; i++) {
-        tree_bundle *b = &p->bundle[i];
-        const real x = tree_dot(&b->row, b->on, &by, star);
-        b->moved += x;
-        for (int32_t j = b->first; j < b->end; j++) p->element[j].q = elements[j].q + elements[j].stiffness * x;
-    }
+    for (tree_bundle *b = p->bundle; b < last; b++) tree_move_bundle(b, &by, star);
 }
 
-RARE void tree_move_deep(tree_problem *p, tree_law laws[], const tree_element_law elements[]) {
-    tree_move_on(p, laws, elements, false);
-}
+RARE void tree_move_deep(tree_problem *p) { tree_move_on(p, false); }
 
-void laconic_tree_move(tree_problem *p, tree_law laws[], const tree_element_law elements[]) {
+void laconic_tree_move(tree_problem *p) {
     if (p->m->star)
-        tree_move_on(p, laws, elements, true);
+        tree_move_on(p, true);
     else
-        tree_move_deep(p, laws, elements);
+        tree_move_deep(p);
 }
 
 /* ------------------------------------------------------------------------------- ν and its forces -- */
@@ -208,7 +208,7 @@ INLINE void tree_take_forces(tree_vector *from, const tree_problem *p, bool star
     for (int32_t i = 0; i < p->bundle_count; i++) {
         const tree_bundle *b = &p->bundle[i];
         real q = R(0);
-        for (int32_t j = b->first; j < b->end; j++) q += p->element[j].q;
+        for (const tree_element *e = b->first; e < b->end; e++) q += e->q;
         tree_subtract(from, &b->row, q, b->on, star);
     }
 }

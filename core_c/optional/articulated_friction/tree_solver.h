@@ -15,6 +15,20 @@
 #define TREE_WHEELS LACONIC_MAX_WHEELS
 #define TREE_ELEMENTS (4 * LACONIC_MAX_BODIES + LACONIC_MAX_WHEELS)
 
+/* What a pass sees of a contact. */
+typedef struct tree_sight {
+    real t[2], length, axle, firm;
+    bool locked;
+} tree_sight;
+
+/* What both kinds of pass give for a contact, for the change of ν in the pass: impulse = impulse + S slip of a standing
+ * wheel, S = along axis axisᵀ + across other otherᵀ, and speed = speed + turn·slip. Where axis[1] is 0, S is diagonal. */
+typedef struct tree_law {
+    real along, across, axis[2], other[2]; /* other is not read where across is 0 */
+    real impulse[2], speed, turn[2];
+    real slip[2]; /* found: the change of moved */
+} tree_law;
+
 typedef struct tree_contact {
     const tree_body *on;
     const laconic_tree_rim *wheel;
@@ -26,6 +40,8 @@ typedef struct tree_contact {
     friction_load load;
     real push;              /* inertia · free speed                          */
     real speed, impulse[2]; /* found; on entry the guess of the impulse           */
+    tree_sight sight;
+    tree_law law;
 } tree_contact;
 
 typedef struct tree_element {
@@ -34,12 +50,13 @@ typedef struct tree_element {
     real all, inverse_all; /* mobility of the row + compliance                               */
     real share, stiffness; /* of the law inside: q = share·q + stiffness (x − target)        */
     real q;                /* found; on entry the guess                                      */
+    real law_stiffness, law_q;
 } tree_element;
 
-/* The elements of one row follow each other: from `first` to before `end`. */
+/* The elements of one row. */
 typedef struct tree_bundle {
     const tree_body *on;
-    int32_t first, end;
+    tree_element *first, *end;
     tree_row row;
     real moved, mobility; /* row·ν; row·row */
 } tree_bundle;
@@ -62,23 +79,11 @@ void laconic_tree_prepare_problem(tree_problem *p);
 /* Finds nu, speeds, impulses and q. Returns the number of passes; 0: refused, as friction_solver.h states. */
 int32_t laconic_tree_solve(tree_problem *p);
 
-/* What both kinds of pass give for a contact, for the change of ν in the pass: impulse = impulse + S slip of a standing
- * wheel, S = along axis axisᵀ + across other otherᵀ, and speed = speed + turn·slip. Where axis[1] is 0, S is diagonal. */
-typedef struct tree_law {
-    real along, across, axis[2], other[2]; /* other is not read where across is 0 */
-    real impulse[2], speed, turn[2];
-    real slip[2]; /* found: the change of moved */
-} tree_law;
-
-typedef struct tree_element_law {
-    real stiffness, q;
-} tree_element_law;
-
 /* Sets S of a law. */
 void laconic_tree_split(tree_law *law, real xx, real xy, real yy);
 
 /* Adds the laws to the equations, solves them, and moves ν and all that moves with it. Elements get their q. */
-void laconic_tree_move(tree_problem *p, tree_law laws[], const tree_element_law elements[]);
+void laconic_tree_move(tree_problem *p);
 
 /* What impulses and q leave of the bodies' equations. */
 void laconic_tree_imbalance(tree_vector *rest, const tree_problem *p);
@@ -108,23 +113,11 @@ static inline bool tree_one_sided(const tree_element *e) {
 
 /* ------------------------------------------------------------------------------- exact passes -- */
 
-/* What a pass sees of a contact. */
-typedef struct tree_sight {
-    real t[2], length, axle, firm;
-    bool locked;
-} tree_sight;
-
-typedef struct tree_search {
-    tree_problem *p;
-    tree_sight sight[TREE_WHEELS];
-    tree_element_law element[TREE_ELEMENTS];
-} tree_search;
-
 /* Looks at all contacts and elements. Returns the square of their residual. */
-real laconic_tree_see(tree_search *at);
+real laconic_tree_see(tree_problem *p);
 
 /* Replaces each by its law as it was seen, and moves to the solution of these. */
-void laconic_tree_exact_pass(tree_search *at);
+void laconic_tree_exact_pass(tree_problem *p);
 
 /* Sets the laws of elements inside their bounds; `of_mass`: the penalty, over the mass that they hold. */
 void laconic_tree_stiffen(tree_problem *p, real of_mass);

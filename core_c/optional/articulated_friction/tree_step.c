@@ -83,27 +83,27 @@ static void tree_find_momenta(tree_part *p) {
 
 /* ------------------------------------------------------------------------------------------ hinges -- */
 
-/* An element of the last bundle. Returns its number. */
-INLINE int32_t tree_new_element(tree_problem *q, real low, real high, real compliance, real target, real guess) {
-    tree_element *e = &q->element[q->element_count];
+/* An element of the last bundle. */
+INLINE const tree_element *tree_new_element(tree_problem *q, real low, real high, real compliance, real target, real guess) {
+    tree_element *e = &q->element[q->element_count++];
     e->low = low;
     e->high = high;
     e->compliance = compliance;
     e->target = target;
     e->q = guess;
-    return q->element_count++;
+    return e;
 }
 
 INLINE tree_bundle *tree_new_bundle(tree_problem *q, const tree_body *on) {
     tree_bundle *b = &q->bundle[q->bundle_count];
     b->on = on;
-    b->first = q->element_count;
+    b->first = q->element + q->element_count;
     return b;
 }
 
 /* Keeps the bundle if it has elements. */
 INLINE void tree_close_bundle(tree_problem *q, tree_bundle *b) {
-    b->end = q->element_count;
+    b->end = q->element + q->element_count;
     if (b->end > b->first) q->bundle_count++;
 }
 
@@ -168,7 +168,7 @@ static void tree_add_hinge(tree_part *p, int32_t b, const tree_state *s) {
     if (spring > R(0)) torque += spring * (link->rest_rad - p->ahead[b - 1]);
     p->problem.free.hinge[b - 1] += h * torque;
     p->factor.l.node[b - 1].along[link->depth - 1] += h * (link->damping_Nms + h * spring);
-    hinge->drive = hinge->dry = hinge->stop = -1;
+    hinge->drive = hinge->dry = hinge->stop = NULL;
     hinge->torque_Nm = hinge->slope_Nms = R(0);
     if (link->hinge == LACONIC_HINGE_PRESCRIBED) tree_add_prescribed(p, b, s);
     if (link->servo) tree_add_servo(p, b, s);
@@ -252,7 +252,7 @@ INLINE void tree_add_wheel(tree_part *p, const tree_state *s, int32_t i, bool st
     tree_load_wheel(c, p, s, i);
     c->creep = c->wheel->creep > R(0) ? tree_creep_of(c, s, i) : R(0);
     for (int k = 0; k < 2; k++) c->impulse[k] = p->h * s->grip_N[i][k];
-    p->scrub[i] = -1;
+    p->scrub[i] = NULL;
     if (c->wheel->scrub_radius_m > R(0)) tree_add_scrub(p, s, i);
 }
 

@@ -27,10 +27,10 @@ typedef struct tree_loads {
     real statics_N[LACONIC_TREE_POINTS]; /* below 0 where lifted, else what is carried */
 } tree_loads;
 
-/* The elements of a hinge (-1: none; stop: the high one, the low one follows), and a drive without limit, whose torque
+/* The elements of a hinge (NULL: none; stop: the high one, the low one follows), and a drive without limit, whose torque
  * is torque − slope ψ'. */
 typedef struct tree_hinge_part {
-    int32_t drive, dry, stop;
+    const tree_element *drive, *dry, *stop;
     real torque_Nm, slope_Nms;
 } tree_hinge_part;
 
@@ -50,7 +50,7 @@ typedef struct tree_part {
     tree_factor factor;
     tree_problem problem;
     tree_hinge_part hinge[TREE_HINGES];
-    int32_t scrub[TREE_WHEELS]; /* elements; -1: none                                            */
+    const tree_element *scrub[TREE_WHEELS]; /* NULL: none                                        */
     real z[LACONIC_TREE_SPEEDS];
     int32_t passes;
 } tree_part;
