@@ -121,7 +121,8 @@ static void tree_fill_group(tree_group *g, int32_t number, const tree_model *m, 
     g->wanted = none;
     for (int32_t b = number; b <= m->body_count; b++) {
         if (m->body[b].group == number)
-            tree_add_weight(g, m->body[b].mass_kg * m->gravity_m_per_s2, at->com_x[b], at->com_y[b]);
+            tree_add_weight(g, m->body[b].mass_kg * m->gravity_m_per_s2, at->hinge_x[b] + at->arm_x[b],
+                            at->hinge_y[b] + at->arm_y[b]);
         else if (m->body[b].hitch && m->body[m->body[b].parent].group == number)
             tree_add_weight(g, hitch_N[b], at->hinge_x[b], at->hinge_y[b]);
     }

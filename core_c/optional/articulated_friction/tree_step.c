@@ -19,18 +19,16 @@
 
 static void tree_find_posture(tree_part *p, const tree_state *s) {
     const tree_model *m = p->m;
-    direction turned[TREE_HINGES];
-    turned[0] = direction_with(R(1), R(0));
     for (int32_t j = 0; j < m->body_count; j++) {
         const tree_body *link = &m->body[j + 1];
         const real turn = R(0.5) * p->h * s->z[3 + j];
-        turned[j] =
+        p->at.axes[j + 1] =
             direction_of_binary_angle((laconic_binary_angle)(s->hinge[j].fraction + laconic_binary_angle_of(turn)));
         p->ahead[j] = R(0);
         if (link->stiffness_Nm > R(0) || link->stops || link->servo)
             p->ahead[j] = heading_unwrapped(&s->hinge[j]) + turn;
     }
-    tree_place(&p->at, m, turned);
+    tree_place(&p->at, m);
     for (int32_t i = 0; i < m->wheel_count; i++) tree_place_wheel(&p->place[i], &p->at, &m->wheel[i]);
 }
 
@@ -77,8 +75,7 @@ static void tree_find_momenta(tree_part *p) {
     momentum[0] = tree_momentum(p, 0);
     for (int32_t b = 1; b <= p->m->body_count; b++) momentum[b] = tree_momentum(p, b);
     for (int32_t b = 0; b <= p->pulled; b++) momentum[b] = plus(momentum[b], scaled(p->h, p->pull[b]));
-    tree_gather(&p->problem.free, &p->at, p->m, momentum);
-    tree_mass(&p->factor.l, &p->at, p->m);
+    tree_gather(&p->factor.l, &p->problem.free, &p->at, p->m, momentum);
 }
 
 /* ------------------------------------------------------------------------------------------ hinges -- */
