@@ -22,18 +22,18 @@ static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_s
     }
 }
 
-/* The electrical side of a motor that gave this torque at this speed. */
-static void tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real speed) {
+/* The electrical side of a motor at this speed. Returns its torque. */
+INLINE real tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real speed) {
     const laconic_tree_motor *a = &p->m->motor[axis];
-    if (!a->acts) return;
-    const motor_state motor = laconic_tree_motor_at(p->m, axis, p->command_V[axis], speed, p->terminal_V);
+    const motor_state motor = tree_motor_at(a, p->command_V[axis], speed, p->terminal_V);
     const bool known = a->ampere_per_Nm != R(0); /* the electrical side */
     const real fed = p->h * motor.voltage_V * (known ? motor.current_A : a->gain_Nm_per_V * speed);
     s->current_A[axis] = motor.current_A;
     s->limit[axis] = (int32_t)motor.limit;
-    s->motor_torque_Nm[axis] = motor.torque - a->viscous_Nms * speed;
+    const real torque = motor.torque - a->viscous_Nms * speed;
     e->supplied += fed;
-    e->motor += fed - p->h * s->motor_torque_Nm[axis] * speed;
+    e->motor += fed - p->h * torque * speed;
+    return torque;
 }
 
 static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s, int32_t i) {
@@ -41,16 +41,14 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     const laconic_tree_rim *w = c->wheel;
     const real old = s->wheel_speed_rad_per_s[i], speed = c->speed, change = speed - old;
     const real torque = p->in->hinged.base.axle_torque_Nm[i];
-    for (int k = 0; k < 2; k++) {
-        e->slip += c->impulse[k] * (c->moved[k] - w->rim[k] * speed);
-        s->grip_N[i][k] = c->impulse[k] / p->h;
-    }
+    e->slip += c->impulse[0] * (c->moved[0] - w->rim[0] * speed) + c->impulse[1] * (c->moved[1] - w->rim[1] * speed);
+    s->grip_N[i][0] = c->impulse[0] / p->h;
+    s->grip_N[i][1] = c->impulse[1] / p->h;
     e->axle += p->h * w->dry_Nm * magnitude(speed);
     e->outer += p->h * torque * speed;
     e->numerical += R(0.5) * w->inertia_kgm2 * change * change;
-    s->motor_torque_Nm[i] = R(0);
-    tree_enter_motor(e, p, s, i, speed);
-    s->motor_torque_Nm[i] += torque;
+    s->motor_torque_Nm[i] = torque;
+    if (p->m->motor[i].acts) s->motor_torque_Nm[i] += tree_enter_motor(e, p, s, i, speed);
     sum_add(&s->wheel_angle_rad[i], R(0.5) * p->h * (old + speed));
     s->wheel_speed_rad_per_s[i] = speed;
     s->scrub_Nm[i] = R(0);
@@ -72,10 +70,11 @@ static void tree_enter_drive(tree_energies *e, const tree_part *p, tree_state *s
     const int32_t axis = p->m->wheel_count + b - 1;
     const real torque = tree_drive_torque(p, s, b), rate = p->z[2 + b];
     if (tree_has_motor(p->m, b)) {
-        tree_enter_motor(e, p, s, axis, rate);
+        if (p->m->motor[axis].acts) s->motor_torque_Nm[axis] = tree_enter_motor(e, p, s, axis, rate);
         return;
     }
-    const bool at_limit = p->m->body[b].servo && p->hinge[b - 1].drive != NULL && magnitude(torque) >= p->m->body[b].servo_limit_Nm;
+    const bool limited = p->m->body[b].servo && p->hinge[b - 1].drive != NULL;
+    const bool at_limit = limited && magnitude(torque) >= p->m->body[b].servo_limit_Nm;
     s->motor_torque_Nm[axis] = torque;
     s->limit[axis] = (int32_t)(at_limit ? LACONIC_LIMIT_CURRENT : LACONIC_LIMIT_NONE);
     e->servo += p->h * torque * rate;

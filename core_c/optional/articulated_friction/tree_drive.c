@@ -10,19 +10,13 @@
 #define TREE_FITS R(1e-6)
 #endif
 
-motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V) {
-    const laconic_tree_motor *a = &m->motor[axis];
-    return motor_state_of(a->circuit, a->gain_Nm_per_V, a->back_emf_Nms, a->torque_limit_Nm, a->ampere_per_Nm,
-                          command_V, speed, terminal_V);
-}
-
 static real tree_drawn_A(const tree_model *m, const real command_V[], const tree_state *state, real terminal_V,
                          real *per_volt) {
     real sum = R(0);
     for (int32_t i = 0; i < m->wheel_count + m->body_count; i++) {
         const laconic_tree_motor *a = &m->motor[i];
         if (a->circuit != LACONIC_MOTOR_DRIVEN || a->ampere_per_Nm == R(0)) continue;
-        const motor_state s = laconic_tree_motor_at(m, i, command_V[i], tree_axis_speed(m, state, i), terminal_V);
+        const motor_state s = tree_motor_at(a, command_V[i], tree_axis_speed(m, state, i), terminal_V);
         const bool whole = s.limit == LACONIC_LIMIT_VOLTAGE;
         const real duty = whole ? (command_V[i] > R(0) ? R(1) : R(-1)) : s.voltage_V / terminal_V;
         const real current = s.current_A * duty;

@@ -44,13 +44,18 @@ static void tree_rest(tree_problem *p) {
     laconic_tree_look(p);
 }
 
-static void tree_snap(tree_problem *p) {
+RARE void tree_snap_slow(tree_problem *p, real most) {
     real energy = tree_square(&p->nu, p->m->body_count);
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
         energy += c->wheel->inertia_kgm2 * c->speed * c->speed;
     }
-    if (energy <= SNAP * SNAP * p->scale) tree_rest(p);
+    if (energy <= most) tree_rest(p);
+}
+
+static void tree_snap(tree_problem *p) {
+    const real most = SNAP * SNAP * p->scale;
+    if (square(p->nu.base) <= most) tree_snap_slow(p, most);
 }
 
 static real tree_imbalance_square(const tree_problem *p) {

@@ -58,7 +58,10 @@ typedef struct tree_part {
 /* ------------------------------------------------------------------------------------- drives -- */
 
 /* In Nm. `terminal_V` as for within_supply(). */
-motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V);
+static inline motor_state tree_motor_at(const laconic_tree_motor *a, real command_V, real speed, real terminal_V) {
+    return motor_state_of(a->circuit, a->gain_Nm_per_V, a->back_emf_Nms, a->torque_limit_Nm, a->ampere_per_Nm,
+                          command_V, speed, terminal_V);
+}
 
 /* Voltage of the supply under the motors' currents at the speeds of the state; −1 without a supply. */
 real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], const tree_state *state);
@@ -83,6 +86,12 @@ laconic_status laconic_tree_accept(const tree_part *p, tree_state *state);
 
 static inline void tree_place_wheel(tree_place_of_wheel *w, const tree_posture *at, const laconic_tree_rim *rim) {
     const direction d = at->axes[rim->body];
+    if (rim->body == 0) { /* its axes are these */
+        w->x = rim->x_m;
+        w->y = rim->y_m;
+        w->pull = direction_with(rim->pull[0], rim->pull[1]);
+        return;
+    }
     w->x = at->hinge_x[rim->body] + (d.cosine * rim->x_m - d.sine * rim->y_m);
     w->y = at->hinge_y[rim->body] + (d.sine * rim->x_m + d.cosine * rim->y_m);
     w->pull = direction_with(d.cosine * rim->pull[0] - d.sine * rim->pull[1],
