@@ -23,9 +23,10 @@ static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_s
 }
 
 /* The electrical side of a motor at this speed. Returns its torque. */
-INLINE real tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real speed) {
+INLINE real tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real command_V,
+                           real speed) {
     const laconic_tree_motor *a = &p->m->motor[axis];
-    const motor_state motor = tree_motor_at(a, p->command_V[axis], speed, p->terminal_V);
+    const motor_state motor = tree_motor_at(a, command_V, speed, p->terminal_V);
     const bool known = a->ampere_per_Nm != R(0); /* the electrical side */
     const real fed = p->h * motor.voltage_V * (known ? motor.current_A : a->gain_Nm_per_V * speed);
     s->current_A[axis] = motor.current_A;
@@ -48,7 +49,8 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     e->outer += p->h * torque * speed;
     e->numerical += R(0.5) * w->inertia_kgm2 * change * change;
     s->motor_torque_Nm[i] = torque;
-    if (p->m->motor[i].acts) s->motor_torque_Nm[i] += tree_enter_motor(e, p, s, i, speed);
+    if (p->m->motor[i].acts)
+        s->motor_torque_Nm[i] += tree_enter_motor(e, p, s, i, p->in->hinged.base.voltage_V[i], speed);
     sum_add(&s->wheel_angle_rad[i], R(0.5) * p->h * (old + speed));
     s->wheel_speed_rad_per_s[i] = speed;
     s->scrub_Nm[i] = R(0);
@@ -70,7 +72,8 @@ static void tree_enter_drive(tree_energies *e, const tree_part *p, tree_state *s
     const int32_t axis = p->m->wheel_count + b - 1;
     const real torque = tree_drive_torque(p, s, b), rate = p->z[2 + b];
     if (tree_has_motor(p->m, b)) {
-        if (p->m->motor[axis].acts) s->motor_torque_Nm[axis] = tree_enter_motor(e, p, s, axis, rate);
+        const real command_V = tree_hinge_command(p->m, p->in, s, b);
+        if (p->m->motor[axis].acts) s->motor_torque_Nm[axis] = tree_enter_motor(e, p, s, axis, command_V, rate);
         return;
     }
     const bool limited = p->m->body[b].servo && p->hinge[b - 1].drive != NULL;

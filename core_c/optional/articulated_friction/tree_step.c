@@ -150,9 +150,8 @@ static void tree_add_servo(tree_part *p, int32_t b, const tree_state *s) {
 }
 
 static void tree_add_motor(tree_part *p, int32_t b, const tree_state *s) {
-    const int32_t axis = p->m->wheel_count + b - 1;
-    const laconic_tree_motor *motor = &p->m->motor[axis];
-    const real volts = within_supply(p->command_V[axis], p->terminal_V);
+    const laconic_tree_motor *motor = &p->m->motor[p->m->wheel_count + b - 1];
+    const real volts = within_supply(tree_hinge_command(p->m, p->in, s, b), p->terminal_V);
     tree_drive_hinge(p, b, motor->gain_Nm_per_V * volts, motor->back_emf_Nms, motor->torque_limit_Nm, s);
 }
 
@@ -201,11 +200,11 @@ INLINE void tree_fill_rows(tree_contact *c, const tree_part *p, const tree_place
     tree_back_row(&c->row[1], &p->factor, c->on, star);
 }
 
-static void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_state *s, int32_t i) {
+INLINE void tree_load_wheel(tree_contact *c, const tree_part *p, const tree_state *s, int32_t i) {
     const laconic_tree_rim *w = c->wheel;
     const laconic_tree_motor *a = &p->m->motor[i];
     const bool driven = a->circuit == LACONIC_MOTOR_DRIVEN;
-    const real volts = driven ? within_supply(p->command_V[i], p->terminal_V) : R(0);
+    const real volts = driven ? within_supply(p->in->hinged.base.voltage_V[i], p->terminal_V) : R(0);
     friction_load *l = &c->load;
     l->grip = p->h * w->friction_coefficient * p->loads.carried_N[i];
     l->axle = p->h * w->dry_Nm;
@@ -277,21 +276,10 @@ static void tree_build(tree_part *p, const tree_state *s) {
     laconic_tree_prepare_problem(q);
 }
 
-static void tree_command(tree_part *p, const tree_state *s) {
-    const tree_model *m = p->m;
-    for (int32_t i = 0; i < m->wheel_count; i++) p->command_V[i] = p->in->hinged.base.voltage_V[i];
-    for (int32_t b = 1; b <= m->body_count; b++) {
-        real *volts = &p->command_V[m->wheel_count + b - 1];
-        *volts = tree_has_motor(m, b) ? p->in->hinged.hinge_voltage_V[b - 1] : R(0);
-        if (tree_has_motor(m, b) && m->body[b].sampled) *volts += s->control_command[b - 1];
-    }
-    p->terminal_V = laconic_tree_terminal_voltage(m, p->command_V, s);
-}
-
 static laconic_status tree_take(tree_part *p, tree_state *s) {
     tree_find_posture(p, s);
     laconic_tree_loads(&p->loads, p->m, &p->at, p->place, s);
-    tree_command(p, s);
+    p->terminal_V = laconic_tree_terminal_voltage(p->m, p->in, s);
     tree_carry(p, s);
     tree_pull(p, s);
     tree_find_momenta(p);
@@ -369,36 +357,47 @@ static laconic_status tree_check_step(const tree_model *m, real step_s, const tr
     return room ? LACONIC_OK : refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
 }
 
-laconic_status laconic_tree_step(const laconic_tree_model *model, laconic_real step_s, laconic_tree_state *state,
-                                 const laconic_tree_input *held, laconic_refusal *why) {
-    laconic_status status = tree_check_step(model, step_s, state, held, why);
-    int32_t wait[TREE_HINGES] = {0};
-    real command[TREE_HINGES] = {R(0)};
+/* The step itself, or parts of it. */
+static laconic_status tree_take_step(const tree_model *m, real step_s, tree_state *state, const laconic_tree_input *in,
+                                     laconic_refusal *why) {
     tree_part p;
-    if (status != LACONIC_OK) return status;
-    for (int32_t b = 0; model->controlled && b < model->body_count; b++) {
+    p.m = m;
+    p.in = in;
+    p.h = step_s;
+    laconic_status status = tree_take(&p, state);
+    for (int32_t count = 2; count <= TREE_MOST_PARTS && status == LACONIC_STEP_UNSOLVED; count *= 2) {
+        p.h = step_s / (real)count;
+        status = tree_take_parts(&p, state, count);
+    }
+    if (status == LACONIC_OK) return status;
+    return refuse(why, status, status == LACONIC_STEP_UNSOLVED ? LACONIC_FIELD_STEP : LACONIC_FIELD_NONE, 0, step_s,
+                  R(0));
+}
+
+/* With loops and sampled servos, which a refusal leaves as they were. */
+RARE laconic_status tree_take_controlled_step(const tree_model *m, real step_s, tree_state *state,
+                                              const laconic_tree_input *in, laconic_refusal *why) {
+    int32_t wait[TREE_HINGES];
+    real command[TREE_HINGES];
+    for (int32_t b = 0; b < m->body_count; b++) {
         wait[b] = state->control_wait[b];
         command[b] = state->control_command[b];
     }
-    if (model->controlled) status = laconic_tree_control(model, step_s, state, held, why);
-    p.m = model;
-    p.in = held;
-    p.h = step_s;
-    if (status == LACONIC_OK) {
-        status = tree_take(&p, state);
-        for (int32_t count = 2; count <= TREE_MOST_PARTS && status == LACONIC_STEP_UNSOLVED; count *= 2) {
-            p.h = step_s / (real)count;
-            status = tree_take_parts(&p, state, count);
-        }
-        if (status != LACONIC_OK)
-            (void)refuse(why, status, status == LACONIC_STEP_UNSOLVED ? LACONIC_FIELD_STEP : LACONIC_FIELD_NONE, 0,
-                         step_s, R(0));
-    }
-    for (int32_t b = 0; status != LACONIC_OK && model->controlled && b < model->body_count; b++) {
+    laconic_status status = laconic_tree_control(m, step_s, state, in, why);
+    if (status == LACONIC_OK) status = tree_take_step(m, step_s, state, in, why);
+    for (int32_t b = 0; status != LACONIC_OK && b < m->body_count; b++) {
         state->control_wait[b] = wait[b];
         state->control_command[b] = command[b];
     }
     return status;
+}
+
+laconic_status laconic_tree_step(const laconic_tree_model *model, laconic_real step_s, laconic_tree_state *state,
+                                 const laconic_tree_input *held, laconic_refusal *why) {
+    const laconic_status status = tree_check_step(model, step_s, state, held, why);
+    if (status != LACONIC_OK) return status;
+    if (model->controlled) return tree_take_controlled_step(model, step_s, state, held, why);
+    return tree_take_step(model, step_s, state, held, why);
 }
 
 #endif

@@ -46,7 +46,7 @@ typedef struct tree_part {
     real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */
     tree_place_of_wheel place[TREE_WHEELS];
     tree_loads loads;
-    real command_V[LACONIC_TREE_AXES], terminal_V;
+    real terminal_V;
     tree_factor factor;
     tree_problem problem;
     tree_hinge_part hinge[TREE_HINGES];
@@ -63,8 +63,15 @@ static inline motor_state tree_motor_at(const laconic_tree_motor *a, real comman
                           command_V, speed, terminal_V);
 }
 
+/* What a loop has set is added to the voltage of a hinge. */
+static inline real tree_hinge_command(const tree_model *m, const laconic_tree_input *in, const tree_state *s,
+                                      int32_t b) {
+    const real volts = in->hinged.hinge_voltage_V[b - 1];
+    return m->body[b].sampled ? volts + s->control_command[b - 1] : volts;
+}
+
 /* Voltage of the supply under the motors' currents at the speeds of the state; −1 without a supply. */
-real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], const tree_state *state);
+real laconic_tree_terminal_voltage(const tree_model *m, const laconic_tree_input *in, const tree_state *state);
 
 /* Lets loops and sampled servos look where it is time. Refuses STEP_DOES_NOT_FIT. */
 laconic_status laconic_tree_control(const tree_model *m, real step_s, tree_state *state, const laconic_tree_input *in,
