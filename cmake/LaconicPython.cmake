@@ -58,3 +58,16 @@ add_custom_target(laconic_venv ALL DEPENDS "${LACONIC_VENV_STAMP}")
 add_dependencies(laconic_venv laconic_venv_pip)
 add_custom_target(laconic_venv_all ALL DEPENDS "${all_stamp}")
 add_dependencies(laconic_venv_all laconic_venv)
+
+# laconic_declarations(<target> <header>): the header's declarations, as the tables of cffi beside it (….py).
+function(laconic_declarations target header)
+    cmake_path(REPLACE_EXTENSION header LAST_ONLY py OUTPUT_VARIABLE tables)
+    set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../packaging/laconic_build/declarations.py")
+    add_custom_command(
+        OUTPUT "${tables}"
+        COMMAND "${LACONIC_PYTHON}" "${script}" --header "${header}" --out "${tables}"
+        DEPENDS "${header}" "${script}"
+        COMMENT "Declarations for Python: ${target}" VERBATIM)
+    add_custom_target(${target} ALL DEPENDS "${tables}")
+    add_dependencies(${target} laconic_venv)
+endfunction()

@@ -2,3 +2,9 @@
 
 Everything starts from numbers that the core has prepared (`field`): nothing here knows about wheels or motors.
 """
+
+# The parts of an analysis in their order, without the libraries that they need.
+GEOMETRY = "geometry"
+TITLES = {GEOMETRY: "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",
+          "traction": "Traction"}
+PARTS = tuple(TITLES)
