@@ -1,7 +1,5 @@
 /* Tests of linear_motion.c: an error is carried as the difference of two motions that are a little apart. */
-#include "check.h"
-#include "estimate_parts.h"
-#include "linear_motion.c"
+#include "linear_motion.c" /* also for its equation, by which a window's error is found */
 #include "methods.h"
 
 static laconic_refusal why;
@@ -183,8 +181,6 @@ static void errors_fade_below_their_border_alone(void) {
     TEST_ASSERT_TRUE(error[2].zeta.x < REAL(0.8) * error[1].zeta.x);
 }
 
-/* ---- test of the equation in linear_motion.c that a window's error is found by. */
-
 /* A determinant of just 0.05 is not usable: what is on the right then stands for the solution. */
 static void a_determinant_of_just_the_least_gives_the_right_hand_side(void) {
     const vector zeta = {REAL(-0.25), REAL(0.5), 0}, right = {1, 2, 3};
@@ -200,6 +196,7 @@ static void a_determinant_of_just_the_least_gives_the_right_hand_side(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_determinant_of_just_the_least_gives_the_right_hand_side);
     RUN_TEST(free_motion_turns_the_error);
     RUN_TEST(damping_lets_it_die);
     RUN_TEST(a_force_in_the_world_follows_the_heading);
@@ -208,6 +205,5 @@ int main(void) {
     RUN_TEST(a_window_without_a_solution_stays_finite);
     RUN_TEST(a_solution_is_usable_from_a_twentieth_on);
     RUN_TEST(a_force_that_has_ended_turns_nothing);
-    RUN_TEST(a_determinant_of_just_the_least_gives_the_right_hand_side);
     return UNITY_END();
 }
