@@ -12,7 +12,7 @@ from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
 from laconic.robot.identify.study import Study, fitted_scene, parts
 from laconic.robot.logs.for_vehicle import wheels_on_carriage
-from laconic.scene.scene_text import Comments, lines_of
+from laconic.scene.scene_tables import Comments, lines_of
 from laconic.scene.table import read_toml
 
 HUNG_AT = {"caster": ("x_m", "y_m"), "trailer": ("hitch_x_m", "hitch_y_m"), "body": ("hinge_x_m", "hinge_y_m")}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from laconic.pictures.curve_style import wrapped
+from laconic.pictures.curves import wrapped
 from laconic.pictures.plotting import figure, save
 from laconic.robot.replay.compare import Comparison
 from laconic.robot.replay.friction import Friction
