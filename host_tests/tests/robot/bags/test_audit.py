@@ -17,6 +17,8 @@ from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.robot.identify.report import interval
 from laconic.robot.replay.rolling import path_of
+from laconic.scene.scene_text import rewritten
+from laconic.scene.table import entries_of
 from recorded_data import recorded
 
 MOCAP = recorded("mecanum_mocap")
@@ -232,9 +234,60 @@ def test_steered_vehicles_are_exported_for_their_controllers(kind, controller, b
     assert (tmp_path / "out" / "audit.png").read_bytes().startswith(b"\x89PNG")
     page = (tmp_path / "out" / "audit.md").read_text()
     assert "offset of the steering" in page and "mm/m ahead" in page and "rollers" not in page
-    log, mapping = tmp_path / "run.csv", tmp_path / "map.toml"
-    assert run(["audit", str(log), str(scene), "--map", str(mapping), "--export", str(tmp_path / "new.toml")]) == 2
-    assert "a scene with steered wheels is not written; export .yaml or .h" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["tricycle", "car"])
+def test_the_scene_and_the_map_that_an_audit_of_a_steered_vehicle_writes_replay_its_log(kind, tmp_path, capsys):
+    scene, fitted, mapped = steered_scene(tmp_path, kind), tmp_path / "fitted.toml", tmp_path / "fitted_map.toml"
+    scene.write_text(scene.read_text().replace("[[vehicle.wheel]]", "# counted from the front\n[[vehicle.wheel]]", 1)
+                     .replace("[run]", "[run]  # a short one"))
+    log, mapping = steered_log(tmp_path, kind, radius=1.03, base=1.05, gain=0.9, offset=0.02, ahead_m=0.3, lag_s=0.1)
+    audited(capsys, log, mapping, scene, "--export", str(fitted), "--map-out", str(mapped))
+    text = fitted.read_text()
+    assert "# counted from the front\n" in text and "[run]  # a short one\n" in text
+    assert "wheel_radius_m = 0.103" in text and "radius of the wheels, factor: 1.03" in text
+    assert re.search(r"#   gain of the steering, factor: 0\.(9|89)", text) and "mass_kg" in text
+    errors = []
+    for robot, columns in ((scene, mapping), (fitted, mapped)):
+        assert run(["replay", str(log), str(robot), "--map", str(columns), "--json"]) == 0, capsys.readouterr().err
+        errors.append(json.loads(capsys.readouterr().out)["runs"][0]["path_error"])
+    assert errors[0] > 0.02 and errors[1] < 0.1 * errors[0]
+
+
+@pytest.mark.parametrize("name", ["f1tenth", "tugger_train", "turtlebot3_burger", "robotino2"])
+def test_a_scene_with_other_values_keeps_its_comments_and_all_else(name):
+    text = scene_path(name).read_text()
+    table = entries_of(text)
+    assert rewritten(text, table, {}) == text
+    table["vehicle"]["mass_kg"], table["vehicle"]["new"] = 123.5, 1.0
+    table["vehicle"]["wheel"][1]["x_m"] = 7.0
+    table["ground"] = {**table.get("ground", {}), "slope_deg": 1.0}
+    del table["vehicle"]["wheel"][0]["kind"]
+    found = rewritten(text, table, {("vehicle", "mass_kg"): "weighed"})
+    assert entries_of(found) == table
+    assert re.search(r"mass_kg = 123\.5  # weighed", found)
+    assert [line for line in found.splitlines() if line.startswith("#")] == [
+        line for line in text.splitlines() if line.startswith("#")]
+    assert found.count("#") == text.count("#") + (1 if "# weighed;" not in found else 0)
+
+
+@pytest.mark.parametrize("text", [
+    "a.b = 1\nc = 2\n", "[x]\ny = {z = 1, w = 2}\n", "c = \"\"\"\n[a]\n\"\"\" # é\n[x]\n\"q r\" = 1\n"])
+def test_a_table_in_any_form_has_the_new_values(text):
+    table = entries_of(text)
+    table["c"] = [1.5, 2.5]
+    table.get("x", {})["y"] = 3
+    assert entries_of(rewritten(text, table, {("c",): "found"})) == table
+
+
+@pytest.mark.parametrize(("mapped", "words"), [
+    (False, "--map-out: needs --map"), (True, "has no steered wheels; --export FITTED.toml holds all")])
+def test_a_map_is_written_only_where_the_audit_corrects_one(mapped, words, tmp_path, capsys):
+    log, mapping = log_of(tmp_path)
+    more = ["--map", str(mapping)] if mapped else []
+    assert run(["audit", str(log), str(scene_of(tmp_path)), *more, "--map-out", str(tmp_path / "new_map.toml")]) == 2
+    error = capsys.readouterr().err
+    assert words in error and error.count("\n") == 1
 
 
 TRICYCLE = recorded("tricycle")

@@ -11,6 +11,7 @@ import numpy as np
 
 from laconic.core.articulated import CARRIAGE
 from laconic.robot.identify.parameter import Parameter, Vehicle
+from laconic.robot.logs.for_vehicle import free_hinges, wheels_behind
 from laconic.robot.replay.rolling import wheel_radii
 from laconic.robot.replay.steered_rolling import STEERED, fixed_wheels
 from laconic.robot.replay.steered_signals import Fitted, OfLog
@@ -83,11 +84,14 @@ def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
 
 def radius_of_all(scene: Scene, relative_sd: float) -> Parameter:
     """One factor for all wheels, and for a commanded speed."""
-    radii = wheel_radii(scene.vehicle)
+    free = wheels_behind(scene, free_hinges(scene))  # which nobody measures
 
     def write(vehicle: Vehicle, value: float) -> None:
-        for wheel, radius in zip(vehicle["wheel"], radii, strict=True):
-            wheel["radius_m"] = value * float(radius)
+        if vehicle.get("wheel_radius_m"):
+            vehicle["wheel_radius_m"] *= value
+        for index, wheel in enumerate(vehicle["wheel"]):
+            if wheel.get("radius_m") and index not in free:
+                wheel["radius_m"] *= value
         _log(vehicle).speed_gain = value
 
     return Parameter("radius of the wheels, factor", "vehicle.wheel[*].radius_m", "radius", "", 1.0, relative_sd, write,
