@@ -26,7 +26,10 @@ def usual(scene: Scene) -> tuple[str, ...]:
     """What is free by default, by what drives and steers the vehicle."""
     if not scene.has_hinges:
         return ("radius", "distance")
-    return ("radius", "track") if is_free(scene) else ("radius", "wheelbase", "steering-gain", "steering-offset")
+    if is_free(scene):
+        return "radius", "track"
+    return "radius", "wheelbase" if steered.axle_of(scene.vehicle) is not None else "distance", "steering-gain", \
+        "steering-offset"
 
 
 def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE_SD) -> Parameters:
@@ -37,6 +40,8 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
         **motion.MAKERS, **{name: steered.MAKERS[name] for name in steered.FOR_ALL}}
     if scene.has_hinges:
         makers = {**steered.MAKERS, "common-radius": _common_radius, "friction": ground.MAKERS["friction"]}
+        if steered.axle_of(scene.vehicle) is None:  # all wheels steer: no axle from which a wheelbase counts
+            makers["distance"] = lambda scene, relative_sd: [steered.distance_of(scene, relative_sd)]
         if {"steering-curve", "steering-gain"} <= set(free):
             raise BadInput("--free steering-curve: says what steering-gain says, and more; take one of them")
     found: list[Parameter] = []
