@@ -65,6 +65,43 @@ def test_a_late_pose_is_found_with_its_lag(tmp_path, capsys):
     assert found["found"] < 0.05 * found["nominal"]
 
 
+AHEAD_M, LEFT_M, TURNED_RAD = 0.02, -0.01, 0.03
+
+
+def tracked(folder: Path, log: Path, has_heading: bool) -> None:
+    """Makes the pose of a log that of a tracker elsewhere on the robot."""
+    head, *rows = log.read_text().splitlines()
+    table = np.loadtxt(rows, delimiter=",")
+    cos, sin = np.cos(table[:, -1]), np.sin(table[:, -1])
+    table[:, -3] += cos * AHEAD_M - sin * LEFT_M
+    table[:, -2] += sin * AHEAD_M + cos * LEFT_M
+    table[:, -1] += TURNED_RAD
+    log.write_text("\n".join([head, *(",".join(f"{value:.9g}" for value in row) for row in table)]) + "\n")
+    mapping = folder / "map.toml"
+    mapping.write_text(mapping.read_text() if has_heading else mapping.read_text().replace(', "yaw"]', "]"))
+
+
+@pytest.mark.parametrize("point", ["origin", "centre_of_mass", "positions"])
+def test_the_tracker_has_its_row_and_its_place_whatever_point_the_log_has(point, tmp_path, capsys):
+    log, mapping = log_of(tmp_path, track=1.02)
+    tracked(tmp_path, log, point != "positions")
+    if point == "centre_of_mass":
+        mapping.write_text(mapping.read_text() + 'point = "centre_of_mass"\n')
+    out = tmp_path / "out"
+    found = audited(capsys, log, mapping, scene_of(tmp_path), "-o", str(out), "--export", str(tmp_path / "new.toml"))
+    assert "place of the tracker" in [each["name"] for each in found["causes"]]
+    assert found["found"] < 0.05 * found["nominal"]
+    values = {each["name"]: each["value"] for each in found["fit"]["parameters"]}
+    assert values["place of the tracker, x"] == pytest.approx(AHEAD_M, abs=1e-3)
+    assert values["place of the tracker, y"] == pytest.approx(LEFT_M, abs=1e-3)
+    if point != "positions":
+        assert values["heading of the tracker"] == pytest.approx(TURNED_RAD, abs=1e-3)
+    page = (out / "audit.md").read_text()
+    assert "| place of the tracker |" in page and "of the robot, " not in page and "heading of the robot" not in page
+    assert run(["replay", str(log), str(tmp_path / "new.toml"), "--map", str(mapping), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["path_error"] < 0.1 * found["nominal"]
+
+
 def test_a_robot_without_faults_is_said_to_have_none(tmp_path, capsys):
     found = audited(capsys, *log_of(tmp_path), scene_of(tmp_path))
     assert found["nominal"] < 1e-6 and found["lag_s"] is None
@@ -144,8 +181,8 @@ def test_a_recorded_mecanum_base_is_calibrated_by_its_map_alone(tmp_path, capsys
     capsys.readouterr()
     found = audited(capsys, MOCAP / "run1.csv", mapping, scene)
     assert found["nominal"] == pytest.approx(0.0217, abs=5e-4) and found["found"] < 0.003
-    heading = next(each for each in found["fit"]["parameters"] if each["name"] == "heading of the robot")
-    assert 0.0 < heading["value"] < math.radians(5.0)
+    heading = next(each for each in found["fit"]["parameters"] if each["name"] == "heading of the tracker")
+    assert -math.radians(5.0) < heading["value"] < 0.0
 
 
 WHEEL = '[[vehicle.wheel]]\nkind = "fixed"\nx_m = {}\ny_m = {}\naxle_deg = -90.0\n{}\n'

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from laconic.core.articulated import CARRIAGE
+from laconic.robot.identify.geometry import OF_TRACKER
 from laconic.robot.identify.ground import OF_TREES
 from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
@@ -141,8 +142,9 @@ def _move_hung(study: Study, data: dict[str, Any], comments: Comments) -> None:
               if p.group in ("place", "heading")}
     if not values:
         return
-    turn = cmath.exp(1j * values.get("vehicle.*.heading", 0.0))
-    shift = complex(*(values.get(f"vehicle.*.{key}", 0.0) for key in ("x_m", "y_m")))
+    heading, *place_m = (values.get(f"vehicle.*.{key}", 0.0) - values.get(OF_TRACKER[key], 0.0)
+                         for key in ("heading", "x_m", "y_m"))
+    turn, shift = cmath.exp(1j * heading), complex(*place_m)
     for table, keys in HUNG_AT.items():
         for index, part in enumerate(data.get(table, ())):
             if part.get("parent", CARRIAGE) == CARRIAGE:
