@@ -136,11 +136,12 @@ def _by_name(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
         return replace(log, wheel_names=(), remarks=(
             *log.remarks, f"the columns {names} are taken for the scene's wheels in this order; name them in a map "
             "if that is wrong"))
-    words = ", ".join(f"{name} is wheel {place + 1}" for name, place in zip(log.wheel_names, places, strict=True))
+    words = ", ".join(f"{name} to wheel {place + 1}" for name, place in zip(log.wheel_names, places, strict=True))
     ordered = [log.wheel_names[places.index(index)] if index in places else "" for index in range(len(wheels))]
     log = _reordered(log, lambda values: spread(values, places, len(wheels)))
     return replace(log, wheel_names=(), column_names=tuple(ordered), is_ordered=True,
-                   remarks=(*log.remarks, f"by their names {words}"))
+                   remarks=(*log.remarks, f"the names assign {words} of the scene; if "
+                                                "that is wrong, name the wheels in a map"))
 
 
 def is_free(scene: Scene) -> bool:
