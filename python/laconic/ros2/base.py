@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from laconic.can.play.vehicle import moved_inertia
+from laconic.core.grip import wheels_text
 from laconic.errors import BadInput, Refused
 from laconic.ros2.motion import Lanes, Motion, Seen, Singles, motion_of, product
 from laconic.scene import Scene
@@ -185,11 +186,10 @@ class Base:
 
     def words_of_limit(self, robot: int) -> str:
         """Which wheels were at the limit of their voltage or torque since the last report; "" where none was."""
-        wheels = [str(wheel) for wheel in np.flatnonzero(self.limited[:, robot]) + 1]
+        wheels = (np.flatnonzero(self.limited[:, robot]) + 1).tolist()
         if not wheels or self.loop.limit is None:
             return ""
-        which = f"wheels {', '.join(wheels[:-1])} and {wheels[-1]} are at their" if wheels[1:] else \
-            f"wheel {wheels[0]} is at its"
+        which = f"{wheels_text(wheels)} {'are at their' if wheels[1:] else 'is at its'}"
         is_voltage, table = self.loop.signal == "voltage_V", self.table
         key = ("base.torque_limit_Nm" if not is_voltage else
                "base.voltage_limit_V" if table.voltage_limit_V else "vehicle.drive.supply_V")
