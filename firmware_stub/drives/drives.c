@@ -88,7 +88,7 @@ laconic_real laconic_drive_brake(const laconic_wheel_drive *drive, const laconic
     return stops_Nm > most_Nm ? most_Nm : stops_Nm < -most_Nm ? -most_Nm : stops_Nm;
 }
 
-static void apply_brakes(const laconic_drives *drives, const laconic_plant *plant, laconic_input *held) {
+static void apply_brakes(const laconic_drives *drives, const laconic_plant *plant, laconic_input *input) {
     laconic_real speed_rad_per_s[LACONIC_MAX_WHEELS];
     laconic_real brakes = 0;
     for (int32_t k = 0; k < drives->count; k++) brakes += drives->drive[k].brake_Nm > 0 ? 1 : 0;
@@ -97,7 +97,8 @@ static void apply_brakes(const laconic_drives *drives, const laconic_plant *plan
     for (int32_t k = 0; k < drives->count; k++) {
         const int32_t i = drives->wheel[k];
         if (drives->drive[k].brake_Nm > 0)
-            held->axle_torque_Nm[i] += laconic_drive_brake(&drives->drive[k], plant, i, speed_rad_per_s[i], 1 / brakes);
+            input->axle_torque_Nm[i] +=
+                laconic_drive_brake(&drives->drive[k], plant, i, speed_rad_per_s[i], 1 / brakes);
     }
 }
 

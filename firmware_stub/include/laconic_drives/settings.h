@@ -1,7 +1,7 @@
 /* The numbers of drives as a client of a node sends them: the one list of these parameters.
  *
  * A new number changes four files, as one of vehicle.h does: here its member and its row; laconic.dbc, its number in
- * the value tables of PARAMETER.field and RESULT.field; packaging/laconic_build/wire/drive_parameters.py, its unit; and
+ * the value tables of PARAMETER.field and RESULT.field; packaging/laconic_build/wire/wire_parameters.py, its unit; and
  * docs/wire.md, made from these. */
 #ifndef LACONIC_DRIVES_SETTINGS_H
 #define LACONIC_DRIVES_SETTINGS_H

@@ -115,6 +115,20 @@ static void no_brake_by_order_holds_a_vehicle_with_hinges_on_ideal_ground(void) 
     TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_ENCODER, node.drives.drive[1].faults);
 }
 
+/* Nothing drives on after a step that was not taken. */
+static void a_step_that_the_core_refuses_turns_the_drives_off(void) {
+    start_drives(&prescribed);
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_SPEED;
+    node.drives.drive[1].target.speed_rad_per_s = 3;
+    bench_pass_ms(100);
+    const laconic_articulated_state before = node.hinges.state;
+    node.hinges.state.heading.turns = INT64_MAX; /* as if a bit had flipped */
+    bench_pass_ms(20);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_TRUE(before.hinge[0].fraction == node.hinges.state.hinge[0].fraction);
+    TEST_ASSERT_EQUAL(LACONIC_DRIVE_OFF, node.drives.drive[1].target.mode);
+}
+
 /* ------------------------------------------------------------------------ ground with friction -- */
 
 static const parameter ground = NUMBER(GROUND_FRICTION_COEFFICIENT, 0, 0.3);
@@ -224,6 +238,7 @@ int main(void) {
     RUN_TEST(a_drive_turns_a_wheel_of_a_vehicle_with_hinges);
     RUN_TEST(a_drive_on_an_axis_that_a_twist_leads_is_refused);
     RUN_TEST(a_drive_beyond_the_last_hinge_is_refused);
+    RUN_TEST(a_step_that_the_core_refuses_turns_the_drives_off);
     RUN_TEST(no_brake_by_order_holds_a_vehicle_with_hinges_on_ideal_ground);
     RUN_TEST(drives_move_a_vehicle_that_slips_as_the_core_with_their_torques);
     RUN_TEST(a_drive_turns_a_prescribed_axis_on_ground_with_friction);

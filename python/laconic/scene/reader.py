@@ -15,7 +15,6 @@ from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.base import read_base, read_frc
 from laconic.scene.drives import read_ardupilot, read_drives, read_speed_controller
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
-from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground, slips
 from laconic.scene.hinge_friction import read_contact
 from laconic.scene.hinge_signals import (
@@ -32,7 +31,7 @@ from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.sensors import NO_SENSORS, SensorTables, read_sensors
 from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
 from laconic.scene.step_choice import AUTO, LARGEST_TOLERANCE
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_field
 
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:

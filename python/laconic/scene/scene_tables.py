@@ -20,7 +20,6 @@ from laconic.core.spelling import PLAIN, x_and_y
 from laconic.errors import BadInput
 from laconic.scene.key_path import EVERY, KeyPath, default_of, key_path
 from laconic.scene.scene import Scene, scene_of
-from laconic.scene.scene_text import lines_of
 from laconic.scene.step_choice import AUTO
 from laconic.scene.table import Table, plain, read_toml
 

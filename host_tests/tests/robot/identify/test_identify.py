@@ -168,7 +168,7 @@ WRONG = {
     "a prior of nothing": (("--prior", "0"), "--prior: 0 % is not usable"),
     "one session": (("--leave-out", "session"), "there is one session only"),
     "no log": (("--judge", "nothing.csv"), "cannot be read"),
-    "the log as output": (("-o", "LOG"), "is no name for this format"),
+    "the log as output": (("-o", "LOG"), "choose a name that ends in .toml"),
     "the scene as output": (("-o", "SCENE"), "is a file that this command reads"),
     "another robot": (("--scene", "robotino2"), "has 2 wheels, the scene 3"),
     "a caster": (("--scene", "paper_caster"), "wheel"),
