@@ -78,3 +78,16 @@ if(LACONIC_PEERS)
     add_custom_target(laconic_peers ALL DEPENDS "${peers_stamp}")
     add_dependencies(laconic_peers laconic_venv)
 endif()
+
+# laconic_declarations(<target> <header>): the header's declarations, as the tables of cffi beside it (….py).
+function(laconic_declarations target header)
+    cmake_path(REPLACE_EXTENSION header LAST_ONLY py OUTPUT_VARIABLE tables)
+    set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../packaging/laconic_build/declarations.py")
+    add_custom_command(
+        OUTPUT "${tables}"
+        COMMAND "${LACONIC_PYTHON}" "${script}" --header "${header}" --out "${tables}"
+        DEPENDS "${header}" "${script}"
+        COMMENT "Declarations for Python: ${target}" VERBATIM)
+    add_custom_target(${target} ALL DEPENDS "${tables}")
+    add_dependencies(${target} laconic_venv)
+endfunction()

@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 from .description import Description
 
@@ -82,6 +81,8 @@ def differing_item(header: Path, source: Path, description: Description) -> str:
 
 def with_items(text: str, methods: tuple[Method, ...]) -> str:
     """The text of a description, its enumeration of methods made anew."""
+    from xml.sax.saxutils import quoteattr  # brings what speaks HTTP, which a program that reads the list need not load
+
     def renewed(found: re.Match[str]) -> str:
         items = (f"{found[1]}  <Item name={quoteattr(method.name)} value=\"{method.number}\" "
                  f"description={quoteattr(method.title)}/>\n" for method in methods)
