@@ -20,7 +20,7 @@ from laconic_build.release import archives, bill
 from laconic_build.release.archives import File
 from laconic_build.release.collect import collect
 from laconic_build.release.parts import Places
-from laconic_build.release.products import products
+from laconic_build.release.products import FOR_DEVELOPERS, products
 from laconic_build.release.tree import NoRelease, Tree, check_tools, tree_of
 from laconic_build.wheel import cross
 from laconic_build.wheel.contents import FMUS, PLATFORMS
@@ -266,3 +266,10 @@ def test_the_node_of_a_wheel_for_another_platform_has_every_room_of_the_node(mon
                if SOURCE_DIR / "firmware_stub" in path.parents}
     rooms = {folder.name for folder in (SOURCE_DIR / "firmware_stub").iterdir() if any(folder.rglob("*.c"))}
     assert len(compiled) == 6 and process == rooms - {"tests"}
+
+
+def test_what_the_core_for_users_leaves_out_is_there():
+    """A name that moved would come back into the archive unseen."""
+    kept = {path.name for path in (SOURCE_DIR / "core_c").iterdir()} - set(FOR_DEVELOPERS)
+    assert all((SOURCE_DIR / "core_c" / name).exists() for name in FOR_DEVELOPERS)
+    assert kept == {"CMakeLists.txt", "cmake", "include", "optional", "src"}
