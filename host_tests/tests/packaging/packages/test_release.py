@@ -268,6 +268,16 @@ def test_the_node_of_a_wheel_for_another_platform_has_every_room_of_the_node(mon
     assert len(compiled) == 6 and process == rooms - {"tests"}
 
 
+def test_the_core_of_a_wheel_for_another_platform_has_every_part_but_the_soft_addition(monkeypatch,
+                                                                                        tmp_path: Path) -> None:
+    compiled: list[set[Path]] = []
+    monkeypatch.setattr(cross, "compile_to", lambda target, sources, *rest, **more: compiled.append(set(sources)))
+    cross.compile_all(PLATFORMS["windows-x86_64"], SOURCE_DIR, tmp_path, tmp_path, "python")
+    parts = [SOURCE_DIR / "core_c" / "src", *(SOURCE_DIR / "core_c" / "optional").iterdir()]
+    every = {path for part in parts if part.name != "soft_double" for path in part.rglob("*.c")}
+    assert len(compiled) == 4 and all(every <= sources for sources in compiled)
+
+
 def test_what_the_core_for_users_leaves_out_is_there():
     """A name that moved would come back into the archive unseen."""
     kept = {path.name for path in (SOURCE_DIR / "core_c").iterdir()} - set(FOR_DEVELOPERS)
