@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import json
 import os
@@ -9,6 +10,7 @@ import shutil
 import subprocess
 import tarfile
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -23,7 +25,7 @@ from laconic_build.release.parts import Places
 from laconic_build.release.products import FOR_DEVELOPERS, products
 from laconic_build.release.tree import NoRelease, Tree, check_tools, tree_of
 from laconic_build.wheel import cross
-from laconic_build.wheel.contents import FMUS, PLATFORMS
+from laconic_build.wheel.contents import FMUS, PLATFORMS, python_files
 from laconic_fmu.cross import TARGETS
 
 DATE = 1_700_000_000
@@ -283,3 +285,30 @@ def test_what_the_core_for_users_leaves_out_is_there():
     kept = {path.name for path in (SOURCE_DIR / "core_c").iterdir()} - set(FOR_DEVELOPERS)
     assert all((SOURCE_DIR / "core_c" / name).exists() for name in FOR_DEVELOPERS)
     assert kept == {"CMakeLists.txt", "cmake", "include", "optional", "src"}
+
+
+STARTED_BY_NAME = {"laconic.__main__", "laconic.fmu.bus_demo"}
+
+
+def test_every_module_of_a_wheel_is_a_command_or_imported_by_another() -> None:
+    """Else it serves the build or the tests alone, and nobody who installs the wheel."""
+    files = {name.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
+             for name, path in python_files(SOURCE_DIR).items() if name.endswith(".py")}
+    imported = {name for module, path in files.items() for name in imports_of(module, path)}
+    unused = {name for name, path in files.items() if name not in imported and path.name != "__init__.py"
+              and not name.startswith("laconic.cli.commands.")}
+    assert unused == STARTED_BY_NAME
+    assert {name for name in imported if name.startswith("laconic_fmu.")} <= files.keys()
+
+
+def imports_of(module: str, path: Path) -> Iterator[str]:
+    """Modules, as far as they are ours; names that are no modules, too."""
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package.rsplit(".", node.level - 1)[0] if node.level else ""
+            source = ".".join(part for part in (above, node.module or "") if part)
+            yield from (source, *(f"{source}.{alias.name}" for alias in node.names if source in ("laconic", package)
+                                  or source.startswith("laconic.")))
