@@ -170,13 +170,13 @@ static void seal_motion(laconic_integrity *it, const laconic_node *node) {
 }
 
 /* A node that has no vehicle has nothing to lose, and FAULT means that there is one. */
-static void fail(laconic_integrity *it, laconic_node *node, uint8_t broken) {
-    const laconic_refusal why = {.status = (laconic_status)LACONIC_WIRE_STATUS_MEMORY_CHANGED, .item = broken};
-    it->broken = broken;
+static void fail(laconic_integrity *it, laconic_node *node, uint8_t checks) {
+    const laconic_refusal why = {.status = (laconic_status)LACONIC_WIRE_STATUS_MEMORY_CHANGED, .item = checks};
+    it->broken = checks;
     node->pending = 0; /* what waits may be what is wrong */
     node->answers_due = 0;
 #if LACONIC_NODE_WITH_ESTIMATE
-    if (broken == LACONIC_INTEGRITY_OF_MODEL) node->estimates = false;
+    if (checks == LACONIC_INTEGRITY_OF_MODEL) node->estimates = false;
 #endif
     if (it->has_vehicle) {
         laconic_node_fail(node, &why, 0);
@@ -246,13 +246,13 @@ static bool is_possible(const laconic_node *node, const laconic_integrity_limits
 
 /* One slice further; at the end of a round, whether all is as it was. */
 static void see_slice(laconic_integrity *it, laconic_node *node) {
-    const memory_part *here = &model_parts[it->part];
-    const uint32_t left = here->size - it->at;
-    const uint32_t count = left < LACONIC_INTEGRITY_SLICE ? left : LACONIC_INTEGRITY_SLICE;
-    add_bytes(&it->running, (const uint8_t *)node + here->offset + it->at, count);
+    const memory_part *memory = &model_parts[it->part];
+    const uint32_t rest_bytes = memory->size - it->at;
+    const uint32_t count = rest_bytes < LACONIC_INTEGRITY_SLICE ? rest_bytes : LACONIC_INTEGRITY_SLICE;
+    add_bytes(&it->running, (const uint8_t *)node + memory->offset + it->at, count);
     it->slices++;
     it->at += count;
-    if (it->at < here->size) return;
+    if (it->at < memory->size) return;
     it->at = 0;
     it->part++;
     if (it->part < PARTS(model_parts)) return;
@@ -407,7 +407,7 @@ bool laconic_integrity_next_frame(laconic_integrity *integrity, laconic_node *no
         fail(integrity, node, LACONIC_INTEGRITY_OF_MOTION);
         seal_motion(integrity, node);
     }
-    const bool found = laconic_node_next_frame(node, frame);
+    const bool is_there = laconic_node_next_frame(node, frame);
     if (checked) integrity->queue = sum_of_queue(node);
-    return found;
+    return is_there;
 }

@@ -124,7 +124,8 @@ def check_ending(option: str, path: Path, endings: tuple[str, ...]) -> None:
         ends = " or ".join([", ".join(endings[:-1]), endings[-1]] if endings[1:] else endings)
         if path.is_dir():
             raise BadInput(f"{option} {path}: is a folder; give the name of a file in it that ends in {ends}")
-        raise BadInput(f"{option} {path}: is no name for this format; choose a name that ends in {ends}")
+        what = f"cannot be a {path.suffix} file" if path.suffix else "has no ending"
+        raise BadInput(f"{option} {path}: {what}; choose a name that ends in {ends}")
 
 
 def _check_writable(option: str, path: Path, is_folder: bool) -> None:

@@ -36,7 +36,18 @@ static void fill_settings(laconic_sensor_settings *settings) {
     }
 }
 
+/* Compares of bytes see gaps between members, too, which a start may leave as the stack had them. */
+static void clear_gaps(laconic_encoder_settings settings[LACONIC_MAX_WHEELS]) {
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        const laconic_encoder_settings kept = settings[i];
+        memset(&settings[i], 0, sizeof settings[i]);
+        settings[i].counts_per_turn = kept.counts_per_turn;
+        settings[i].gear_ratio = kept.gear_ratio;
+    }
+}
+
 static void fill_sensors(laconic_sensors *sensors) {
+    clear_gaps(sensors->settings.encoder);
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
         sensors->encoder[i].count = -5000000000 - i;
         FILL(sensors->encoder[i].rest);
@@ -85,7 +96,7 @@ static void every_member_comes_back_in_another_instance(void) {
     model->plant.steps = 0x1020304050607080U;
     fill_sensors(&model->sensors);
     fill_clock(&instance()->clock);
-    TEST_ASSERT_EQUAL_size_t(9704, write()); /* another size is another STATE_VERSION */
+    TEST_ASSERT_EQUAL_size_t(9320 + VEHICLE_BYTES, write()); /* another size is another STATE_VERSION */
     const fmu_clock clock = instance()->clock;
     const fmu_model before = *model;
     into_another(fmi2CoSimulation);

@@ -188,7 +188,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: laconic.load_core(None), "real: there is no None; known are double, single"),  # type: ignore[arg-type]
     (lambda: laconic.load_core([3]), "real: there is no [3]; known are double, single"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu(scene(), "s1.fmu", version=2.0), "there is no FMI 2.0; give 2 or 3"),  # type: ignore
-    (lambda: laconic.make_fmu(scene(), "nowhere/s1.txt", version=2), "s1.txt: is no name for this format"),
+    (lambda: laconic.make_fmu(scene(), "nowhere/s1.txt", version=2), "s1.txt: cannot be a .txt file; choose a name"),
     (lambda: wheels().plant().run([6, -3, 2]), 'by its name, such as {"voltage_V": [6, -3, 2]}'),
     (lambda: wheels().plant().run({"voltage_V": np.ones((3, 1))}), "numbers of shape (3, 1) are not its numbers, of "
                                                                    "which there are 3; give them in one row"),

@@ -28,6 +28,7 @@ from bag_support import (
 from laconic.cli.main import run
 from laconic.robot.bags.messages import decoder_of
 from laconic.robot.logs import gather_logs
+from laconic.robot.logs.fields import Field
 
 USUAL = """name = "bag"
 format = "bag"
@@ -71,7 +72,7 @@ def test_usual_topics_need_no_map_and_are_joined_by_their_stamps(container, tmp_
     found = replayed(capsys, log, scene_of(tmp_path))
     assert found["runs"][0]["path_error"] < 2e-5
     remarks = " ".join(found["remarks"])
-    assert "by their names left_wheel is wheel 1, right_wheel is wheel 2" in remarks
+    assert "the names assign left_wheel to wheel 1, right_wheel to wheel 2 of the scene" in remarks
     assert "/mocap/pose: 124 messages" in remarks and "recorded 0.07 s after their stamps" in remarks
 
 
@@ -174,7 +175,8 @@ def test_ticks_of_a_type_of_its_own_are_columns_by_field(tmp_path, capsys):
     assert "give wrap = 65536" in refused(capsys, log, scene, "--map", mapped(tmp_path, text))
     found = replayed(capsys, log, scene, "--map", mapped(tmp_path, f"{text}wrap = 65536\n"))
     assert found["runs"][0]["path_error"] < 2e-5
-    assert any("/ticks: messages have no stamps" in each for each in found["remarks"])
+    assert any("/ticks: its messages have no time stamps, so the times of recording are used" in each
+               for each in found["remarks"])
 
 
 def test_json_in_an_mcap_is_read(tmp_path, capsys):
@@ -293,7 +295,7 @@ def test_a_missing_package_is_named_with_its_extra(tmp_path, capsys, monkeypatch
     monkeypatch.setitem(sys.modules, "rosbags", None)
     from laconic.robot.bags.messages import _store_of
     _store_of.cache_clear()
-    monkeypatch.setattr("laconic.base.extras.requires", lambda _: ['rosbags>=0.10; extra == "bags"'])
+    monkeypatch.setattr("importlib.metadata.requires", lambda _: ['rosbags>=0.10; extra == "bags"'])
     assert 'pip install "laconic[bags]"' in refused(capsys, log, scene_of(tmp_path))
 
 
@@ -304,8 +306,44 @@ def test_what_is_in_a_bag_is_shown_with_a_map_to_begin_with(tmp_path, capsys):
     shown = capsys.readouterr().out
     assert "/mocap/pose" in shown and "wheels left_wheel, right_wheel" in shown
     assert path_error(capsys, log, scene, "--map", tmp_path / "map.toml") < 2e-5
-    assert run(["logs", str(log), "--fields", "/mocap/pose"]) == 0
-    assert "/mocap/pose.pose.position.x = 0.0" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("is_ulog", [False, True])
+def test_the_fields_of_a_topic_are_shown_with_their_ranges_over_the_whole_recording(is_ulog, tmp_path, capsys):
+    messages, topic = Messages(), "/joint_states"
+    rows = drive(messages)
+    log = rosbag2(tmp_path / "run", rows, messages)
+    angles = np.array([list(message.position) for _, name, _, message in rows if name == topic])
+    if is_ulog:
+        topic = "wheel_encoders"
+        stamps = 0.02 * np.arange(len(angles))
+        log = ulog(tmp_path / "run.ulg", {topic: (("wheel_angle_rad[0]", "wheel_angle_rad[1]"),
+                                                  np.column_stack([stamps, angles]))})
+    assert run(["logs", str(log), "--fields", topic, "--json"]) == 0, capsys.readouterr().err
+    found = json.loads(capsys.readouterr().out)
+    fields = {each["field"]: each for each in found["fields"]}
+    for index, joint in enumerate(("left_wheel", "right_wheel")):
+        field = fields[f"{topic}.wheel_angle_rad[{index}]" if is_ulog else f"{topic}.position[{joint}]"]
+        assert (field["values"], field["unit"]) == (len(angles), "rad")
+        assert [field[key] for key in ("first", "smallest", "largest")] == pytest.approx(
+            [angles[0, index], angles[:, index].min(), angles[:, index].max()], rel=1e-6)
+    assert run(["logs", str(log), "--fields", topic]) == 0
+    shown = capsys.readouterr().out
+    assert f"{len(angles)} messages" in shown and "smallest" in shown and f"{angles[:, 0].max():.6g}" in shown
+
+
+@pytest.mark.parametrize(("kind", "name", "values", "unit"), [
+    ("JointState", "position[front]", (0, 4096), "tick"), ("JointState", "position[front]", (0.0, 3.5), "rad"),
+    ("Odometry", "twist.twist.angular.z", (0.1,), "rad/s"), ("Odometry", "pose.covariance[0]", (0.1,), ""),
+    ("Odometry", "pose.pose.position.x", (0.1,), "m"), ("Imu", "linear_acceleration.x", (9.8,), "m/s²"),
+    ("NavSatFix", "latitude", (49.1,), "deg"), ("BatteryState", "voltage", (12.1,), "V"),
+    ("Drive", "speed_m_per_s", (1.0,), "m/s"), ("Drive", "rpm", (1.0,), "rpm"), ("Drive", "x", (1.0,), ""),
+    ("Imu", "header.stamp.nanosec", (5,), "ns"), ("AckermannDrive", "steering_angle", (0.2,), "rad")])
+def test_the_unit_of_a_field_comes_from_type_name_and_values(kind, name, values, unit):
+    field = Field(name, values[0])
+    for value in values:
+        field.take(value)
+    assert field.unit("/topic", kind) == unit
 
 
 def test_the_scene_of_these_tests_has_the_wheels_of_their_motion():

@@ -235,9 +235,9 @@ def test_a_simulated_bag_is_not_said_to_lack_something(scene, tmp_path, capsys):
     words = " ".join(found["words"])
     assert "lacks something" not in words and "err alike" not in words
     assert all(each["low"] <= each["nominal"] <= each["high"] for each in found["parameters"])
-    assert "/wheel_voltages: messages have no stamps" in words  # and it is not said to be joined by them
-    joined, = (each for each in found["words"] if "/wheel_voltages" in each and "joined" in each)
-    assert "joined to the rows by their instants of arrival" in joined
+    assert "/wheel_voltages: its messages have no time stamps" in words  # and it is not said to be joined by them
+    joined, = (each for each in found["words"] if "/wheel_voltages" in each and "assigned" in each)
+    assert "assigned to the rows by their times of recording" in joined
 
 
 def test_an_audit_of_a_simulated_bag_says_that_the_scene_is_right(tmp_path, capsys):

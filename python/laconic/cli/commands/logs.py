@@ -19,7 +19,7 @@ from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
 @click.option("--scene", type=SceneName(hinges=True),
               help="The robot whose wheels the names of columns or joints are of.")
 @click.option("--fields", "topic", metavar="TOPIC",
-              help="Show the fields of one topic, with the values of its first message.")
+              help="Show the fields of one topic: count, first, smallest and largest value, probable unit.")
 @json_flag("Machine-readable result on stdout.")
 def command(log: Path, out: Path | None, scene: str | None, topic: str | None, json_wanted: bool) -> None:
     """Shows what is in LOG: a CSV or other text, a MATLAB file, a CAN log, or a recording of topics (rosbag1, rosbag2,
@@ -28,11 +28,12 @@ def command(log: Path, out: Path | None, scene: str | None, topic: str | None, j
     Columns or topics are listed with what they probably are. MAP.toml is a map to begin with, for --map of replay,
     identify and audit; what it lacks is printed, and stands in it as comments.
     """
-    from laconic.robot.logs.inspection import inspect, lines_of_fields
+    from laconic.robot.logs.fields import fields_of
+    from laconic.robot.logs.inspection import inspect
 
     if topic is not None:
-        for line in lines_of_fields(log, topic):
-            click.echo(line)
+        fields = fields_of(log, topic)
+        click.echo(json.dumps(fields.as_json(), indent=1) if json_wanted else "\n".join(fields.lines()))
         return
     found = inspect(log, _wheels(scene))
     if out is not None:

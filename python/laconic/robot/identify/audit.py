@@ -13,18 +13,21 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot.identify.geometry import geometry_of
+from laconic.robot.identify.geometry import geometry_of, tracker_of
 from laconic.robot.identify.ground import base_of
-from laconic.robot.identify.parameter import Vehicle
+from laconic.robot.identify.parameter import Parameters, Vehicle
 from laconic.robot.identify.rolling_evidence import in_frame, relative, run_of, stretch_errors
 from laconic.robot.identify.solve import Fit
-from laconic.robot.identify.steered_audit import SteeredModel, lag_of_fit
+from laconic.robot.identify.steered_audit import FREE as FREE_OF_STEERED
+from laconic.robot.identify.steered_audit import lag_of_fit, parameters_of
 from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
+from laconic.robot.logs.log import POINTS as OF_POSES
 from laconic.robot.logs.poses import at_times
 from laconic.robot.replay.measures import path_errors, path_length
 from laconic.robot.replay.missed_wraps import fitting, rolled_alone
 from laconic.robot.replay.rolling import rolling_of
+from laconic.robot.replay.steered_rolling import SteeredRolling
 from laconic.scene import Scene
 from laconic.scene.ground import slips
 
@@ -33,6 +36,7 @@ WINDOW_S, POINTS = 0.4, 600   # of the motions that are compared, and how many o
 WORTH = 0.05                  # of the difference in motion: a lag that takes away less is noise
 LEAST_MOVED = 0.02            # of the largest direction: in others the runs do not tell a gain
 STEPS = 3                     # of the progress bar
+CLEARLY = 0.5                 # of the error: a path that goes round and round has many least values
 SIDEWAYS = "to the left"
 DIRECTIONS = ("ahead", SIDEWAYS, "turn")
 RADIUS, DISTANCE, TRACKER, LAG = "radius of the wheels", "distance of the wheels", "place of the tracker", "time lag"
@@ -64,7 +68,7 @@ class Audit:
     gains: dict[str, float]  # true motion over that of the fitted wheels, in each direction that the runs tell
     gain_errors: dict[str, float]  # standard errors of these
     spread: np.ndarray      # root mean square of the stretches' errors: ahead, left [m for 1 m], turn [rad for 1 m]
-    model: RigidModel | SteeredModel
+    model: Model
 
     @property
     def fitted(self) -> Scene:
@@ -87,21 +91,32 @@ class Audit:
         return min(1.0, (self.found / self.nominal) ** 2) if self.nominal > 0.0 else 1.0
 
 
-class RigidModel:
-    """How a vehicle without hinges rolls, by the values of a fit."""
-
-    free = FREE
+class Model:
+    """How a vehicle rolls, by the values of a fit."""
 
     def __init__(self, scene: Scene):
         self.scene = scene
+        self.free = FREE_OF_STEERED if scene.has_hinges else FREE
 
     def path(self, vehicle: Vehicle, log: Log) -> np.ndarray:
         """Poses at the samples' times, from the true first one; placed to fit positions alone."""
+        if self.scene.has_hinges:
+            return SteeredRolling(replace(self.scene, vehicle=vehicle)).path(log)
         return rolling_of(self.scene.core(), vehicle, self.scene.path).path(log)
 
     def fit(self, runs: Sequence[Log], groups: Sequence[str]) -> Study:
         """Finds the values of some groups."""
-        return identify(self.scene, runs, geometry_of(self.scene, groups))
+        if not self.scene.has_hinges:
+            of_centre = all(run.pose_point == OF_POSES[1] for run in runs)
+            tracker = tracker_of(of_centre, any(run.has_heading for run in runs))
+            rolling = geometry_of(self.scene, [each for each in groups if each not in FREE[TRACKER]])
+            return identify(self.scene, runs, Parameters((*rolling.each, *tracker)))
+        free = parameters_of(self.scene, groups)
+        whole, parts = (identify(self.scene, runs, free, whole=each) for each in (True, False))
+        return parts if self._error(parts, runs) < CLEARLY * self._error(whole, runs) else whole
+
+    def _error(self, study: Study, runs: Sequence[Log]) -> float:
+        return error_of(self, self.fitted(study.found).vehicle, runs)
 
     def fitted(self, found: Fit) -> Scene:
         """The scene with the values found."""
@@ -117,8 +132,8 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     runs = fitting(scene, logs)
     for run in runs:
         run.needs("pose", "an audit")
-    model = SteeredModel(scene) if scene.has_hinges else RigidModel(scene)
-    free = {name: groups for name, groups in model.free.items() if name != TRACKER or _tells_tracker(runs)}
+    model = Model(scene)
+    free = dict(model.free)
     lag_s = None if LAG in free else lag_of(runs, [model.path(scene.vehicle, run) for run in runs])
     moved = runs if lag_s is None else [without_lag(run, lag_s) for run in runs]
     advance()
@@ -154,11 +169,7 @@ def _with_nominal(study: Study, groups: Sequence[str]) -> Vehicle:
     return parameters.vehicle(base_of(study.scene, parameters), values)
 
 
-def _tells_tracker(runs: Sequence[Log]) -> bool:
-    return all(run.has_heading and run.pose_point == "origin" for run in runs)
-
-
-def error_of(model: RigidModel | SteeredModel, vehicle: Vehicle, runs: Sequence[Log]) -> float:
+def error_of(model: Model, vehicle: Vehicle, runs: Sequence[Log]) -> float:
     """Root mean square over the runs."""
     every = [path_errors(run.stem, run, model.path(vehicle, run)).path_error for run in runs]
     errors = [each for each in every if each is not None]

@@ -16,9 +16,10 @@ from laconic.robot.identify.ground import has_rollers
 from laconic.robot.identify.report import as_numbers as numbers_of_study
 from laconic.robot.identify.rolling_evidence import STRETCHES
 from laconic.robot.identify.steered_audit import controllers_text as steered_text
-from laconic.robot.identify.steered_audit import own_of, place_of_wheel
+from laconic.robot.identify.steered_audit import place_of_wheel
 from laconic.robot.logs.log import counted, remarks_of
 from laconic.robot.replay.rolling import wheel_radii
+from laconic.robot.replay.steered_signals import of_log
 from laconic.scene.base import joint_names
 
 WORTH_A_LINE = 0.002    # of a radius
@@ -30,9 +31,6 @@ PARALLEL_RAD = 0.02     # between axles that count as one direction
 def export(found: Audit, path: Path) -> str:
     """The text for a file of this ending."""
     if path.suffix.lower() == ".toml":
-        if found.scene.has_hinges:
-            raise BadInput(f"--export {path}: a scene with steered wheels is not written; export .yaml or .h, "
-                           "whose numbers go into the scene and the map by hand")
         return fitted_text(found.study)
     if path.suffix.lower() == ".h":
         return header_text(found, path)
@@ -61,7 +59,7 @@ def controllers_text(found: Audit) -> str:
     """Parameters of diff_drive_controller, mecanum_drive_controller, or those of steered vehicles."""
     wheels = found.scene.vehicle["wheel"]
     if found.scene.has_hinges:
-        lines = steered_text(found.scene, found.fitted, own_of(found.vehicle), _joints(found), _hinge_joints(found))
+        lines = steered_text(found.scene, found.fitted, of_log(found.vehicle), _joints(found), _hinge_joints(found))
         return "\n".join([*_head(found, "#"), *lines, ""])
     if _is_differential(wheels):
         return _differential(found)
@@ -127,10 +125,10 @@ def header_text(found: Audit, path: Path) -> str:
         values = {"RADIUS_M": radius, "X_M": x_m, "Y_M": y_m, "AXLE_RAD": wheel["axle_rad"]}
         rows += [(f"ROBOT_WHEEL_{number}_{key}", f"{value:.9g}") for key, value in values.items()]
     if found.scene.has_hinges:
-        own = own_of(found.vehicle)
-        rows += [(f"ROBOT_{name}", f"{own[key]:.9g}") for name, key in (
-            ("STEERING_GAIN", "gain"), ("STEERING_OFFSET_RAD", "offset"), ("TRACKER_X_M", "x"), ("TRACKER_Y_M", "y"),
-            ("TRACKER_HEADING_RAD", "heading"))]
+        own = of_log(found.vehicle)
+        rows += [(f"ROBOT_{name}", f"{value:.9g}") for name, value in (
+            ("STEERING_GAIN", own.gain), ("STEERING_OFFSET_RAD", own.offset_rad), ("TRACKER_X_M", own.tracker_x_m),
+            ("TRACKER_Y_M", own.tracker_y_m), ("TRACKER_HEADING_RAD", own.tracker_heading_rad))]
     if found.lag_s is not None:
         rows.append(("ROBOT_POSE_LAG_S", f"{found.lag_s:.9g}"))
     lines = [f"#define {name} ({value})" for name, value in rows]

@@ -44,11 +44,11 @@ def kind_of(logs: Sequence[Log], parameters: Parameters) -> str:
         log.pose is None and log.yaw_rate_rad_per_s is not None for log in logs) else "path"
 
 
-def evidence_of(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> Evidence:
-    """Of the kind that the parameters need and the logs have."""
+def evidence_of(scene: Scene, logs: Sequence[Log], parameters: Parameters, whole: bool = False) -> Evidence:
+    """Of the kind that the parameters need and the logs have. `whole`: by whole paths for vehicles with hinges, too."""
     kind, base = kind_of(logs, parameters), base_of(scene, parameters)
     if scene.has_hinges:
-        return SteeredEvidence(scene, base, logs)
+        return SteeredEvidence(scene, base, logs, whole=whole)
     if any(p.group == "clock-lag" for p in parameters.each) and (kind != "path" or slips(base)):
         raise BadInput("--free clock-lag: is found by rolling without slip and a recorded pose; find it so first")
     if kind == "motion":

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
 from laconic.core.articulated import CARRIAGE
-from laconic.robot.identify.parameter import Parameter, Vehicle
+from laconic.robot.identify.parameter import Parameter, Parameters, Vehicle
+from laconic.robot.logs.for_vehicle import free_hinges, measuring, wheels_behind
+from laconic.robot.logs.log import Log
 from laconic.robot.replay.rolling import wheel_radii
 from laconic.robot.replay.steered_rolling import STEERED, fixed_wheels
 from laconic.robot.replay.steered_signals import Fitted, OfLog
@@ -30,7 +32,8 @@ def _log(vehicle: Vehicle) -> OfLog:
     return cast(Fitted, vehicle).log
 
 
-def _of_log(key: str, name: str, group: str, unit: str, nominal: float, sd: float, low: float = -math.inf) -> Parameter:
+def of_map(key: str, name: str, group: str, unit: str, nominal: float, sd: float, low: float = -math.inf) -> Parameter:
+    """A correction of the log's map, a member of OfLog."""
     def write(vehicle: Vehicle, value: float) -> None:
         setattr(_log(vehicle), key, value)
 
@@ -41,7 +44,7 @@ Maker = Callable[[Scene, float], list[Parameter]]
 
 
 def _one(*given: Any) -> Maker:
-    return lambda scene, _: [_of_log(*given)]
+    return lambda scene, _: [of_map(*given)]
 
 
 def _curve(scene: Scene, relative_sd: float) -> list[Parameter]:
@@ -66,18 +69,65 @@ def _rate(scene: Scene, relative_sd: float) -> list[Parameter]:
     limits = [hinge.rate_limit_rad_per_s for hinge in scene.hinges if hinge.kind in STEERED
               and hinge.rate_limit_rad_per_s]
     nominal = min(limits, default=USUAL_RATE_RAD_PER_S)
-    return [_of_log("rate_limit_rad_per_s", "rate limit of the steering", "steering-rate", "rad/s", nominal,
+    return [of_map("rate_limit_rad_per_s", "rate limit of the steering", "steering-rate", "rad/s", nominal,
                     0.3 * nominal, LEAST_SHARE * nominal)]
 
 
 def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
-    """Of the driven wheels: nobody measures the others."""
-    def write(index: int, vehicle: Vehicle, value: float) -> None:
+    """Of the driven wheels; the runs say whether others are measured."""
+    return [_radius(scene, i, relative_sd) for i, wheel in enumerate(scene.vehicle["wheel"])
+            if wheel.get("driven", True)]
+
+
+def _radius(scene: Scene, index: int, relative_sd: float) -> Parameter:
+    def write(vehicle: Vehicle, value: float) -> None:
         vehicle["wheel"][index]["radius_m"] = value
 
-    return [Parameter(f"radius of wheel {i + 1}", f"vehicle.wheel[{i + 1}].radius_m", "radius", "m", radius,
-                      relative_sd * radius, partial(write, i), relative_sd * radius, low=LEAST_SHARE * radius)
-            for i, radius in enumerate(wheel_radii(scene.vehicle)) if scene.vehicle["wheel"][i].get("driven", True)]
+    radius = float(wheel_radii(scene.vehicle)[index])
+    return Parameter(f"radius of wheel {index + 1}", f"vehicle.wheel[{index + 1}].radius_m", "radius", "m", radius,
+                     relative_sd * radius, write, relative_sd * radius, low=LEAST_SHARE * radius)
+
+
+def with_measuring(scene: Scene, runs: Sequence[Log], parameters: Parameters) -> Parameters:
+    """With the radii of undriven wheels that runs measure, where those of the driven ones are free: wrong, they would
+    distort all else."""
+    radii = [p for p in parameters.each if p.path.startswith("vehicle.wheel[") and p.group == "radius" and p.unit]
+    if not scene.has_hinges or not radii:
+        return parameters
+    relative_sd = radii[0].prior_sd / radii[0].nominal
+    more = [_radius(scene, index, relative_sd) for index in sorted({i for run in runs for i in measuring(run, scene)})]
+    place = parameters.each.index(radii[-1]) + 1
+    return Parameters((*parameters.each[:place], *more, *parameters.each[place:]))
+
+
+def radius_of_all(scene: Scene, relative_sd: float) -> Parameter:
+    """One factor for all wheels, and for a commanded speed."""
+    free = wheels_behind(scene, free_hinges(scene))  # which nobody measures
+
+    def write(vehicle: Vehicle, value: float) -> None:
+        if vehicle.get("wheel_radius_m"):
+            vehicle["wheel_radius_m"] *= value
+        for index, wheel in enumerate(vehicle["wheel"]):
+            if wheel.get("radius_m") and index not in free:
+                wheel["radius_m"] *= value
+        _log(vehicle).speed_gain = value
+
+    return Parameter("radius of the wheels, factor", "vehicle.wheel[*].radius_m", "radius", "", 1.0, relative_sd, write,
+                     low=LEAST_SHARE)
+
+
+def distance_of(scene: Scene, relative_sd: float) -> Parameter:
+    """One factor for the places of all wheels and steered hinges on the carriage, about the origin."""
+    def write(vehicle: Vehicle, value: float) -> None:
+        for wheel in vehicle["wheel"]:
+            if wheel.get("body", CARRIAGE) == CARRIAGE:
+                wheel["x_m"], wheel["y_m"] = value * wheel["x_m"], value * wheel["y_m"]
+        for i in steered_bodies(scene):
+            body = vehicle["body"][i]
+            body["hinge_x_m"], body["hinge_y_m"] = value * body["hinge_x_m"], value * body["hinge_y_m"]
+
+    return Parameter("distance of the wheels, factor", "vehicle.wheel[*].distance", "distance", "", 1.0, relative_sd,
+                     write, low=LEAST_SHARE)
 
 
 def steered_bodies(scene: Scene) -> list[int]:
@@ -186,7 +236,7 @@ MAKERS: dict[str, Maker] = {
     "speed-gain": _one("speed_gain", "gain of the speed", "speed-gain", "", 1.0, SPEED_SD, LEAST_SHARE),
     "speed-offset": _one("speed_offset_m_per_s", "offset of the speed", "speed-offset", "m/s", 0.0, 0.1),
     "speed-lag": _one("speed_lag_s", "lag of the speed", "speed-lag", "s", 0.0, LAG_SD_S),
-    "place": lambda scene, _: [_of_log(f"tracker_{axis}_m", f"place of the tracker, {axis}", "place", "m", 0.0,
+    "place": lambda scene, _: [of_map(f"tracker_{axis}_m", f"place of the tracker, {axis}", "place", "m", 0.0,
                                        TRACKER_SD_M) for axis in "xy"],
     "heading": _one("tracker_heading_rad", "heading of the tracker", "heading", "rad", 0.0, HEADING_SD_RAD),
     "clock-lag": _one("clock_lag_s", "lag of the tracker", "clock-lag", "s", 0.0, CLOCK_SD_S),

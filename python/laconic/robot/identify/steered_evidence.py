@@ -16,7 +16,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from laconic.robot.identify.parameter import Parameters, Vehicle
-from laconic.robot.identify.rolling_evidence import RollingEvidence, stretch_errors
+from laconic.robot.identify.resolution import floor_of_all
+from laconic.robot.identify.rolling_evidence import RollingEvidence, path_residual, stretch_errors, stretch_scores
 from laconic.robot.logs import Log
 from laconic.robot.replay.measures import path_length
 from laconic.robot.replay.rolling import path_of
@@ -38,23 +39,32 @@ LAGS, INSIDE = ("steering-lag", "speed-lag"), 0.5   # a lag of 0 is a bound, and
 
 class SteeredEvidence(RollingEvidence):
     """Runs of one vehicle, for `solve.fit`: what the motion of each stretch is off by, ahead, to the left, in turn, in
-    units of the usual error of each."""
+    units of the usual error of each. With `whole`, the distance of whole paths instead, begun from what the stretches
+    say: an audit explains that error."""
 
-    counts_stretches, by_wheels = True, False
+    by_wheels = False
 
-    def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log], sizes: np.ndarray | None = None):
+    def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log], sizes: np.ndarray | None = None,
+                 whole: bool = False):
         super().__init__(scene.core(), scene.path, logs)
-        self.runs = [replace(run, cuts=_cuts(log)) for run, log in zip(self.runs, logs, strict=True)]
-        self.sessions = [f"{log.path} {log.part}" for log in logs]
+        self.stretches = [replace(run, cuts=_cuts(log)) for run, log in zip(self.runs, logs, strict=True)]
+        self.counts_stretches = not whole
         self.difference = SMALL if slips(base) else 0.0
-        self.directions = 3 * sum(len(run.cuts) - 1 for run in self.runs) / len(self.runs)
+        if self.counts_stretches:
+            self.runs, self.sessions = self.stretches, [f"{log.path} {log.part}" for log in logs]
+            self.directions = 3 * sum(len(run.cuts) - 1 for run in self.runs) / len(self.runs)
         self.sizes = np.ones(3) if sizes is None else sizes
         self._scene, self._logs = scene, list(logs)
+        if whole:
+            self.floor = floor_of_all(self._kind(base)(replace(scene, vehicle=base)).path, logs, self.runs)
+
+    @staticmethod
+    def _kind(vehicle: Vehicle) -> type[SteeredRolling]:
+        return SteeredSlip if slips(vehicle) else SteeredRolling
 
     def paths(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Predicted, as the tracker sees them."""
-        kind = SteeredSlip if slips(vehicle) else SteeredRolling
-        rolling = kind(replace(self._scene, vehicle=vehicle))
+        rolling = self._kind(vehicle)(replace(self._scene, vehicle=vehicle))
         return [rolling.path(log) for log in self._logs]
 
     def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
@@ -62,11 +72,16 @@ class SteeredEvidence(RollingEvidence):
         return [stretch_errors(run, path) for run, path in zip(self.runs, self.paths(vehicle), strict=True)]
 
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
-        """In units of their usual sizes."""
+        """In units of their usual sizes; of whole paths, over their length."""
+        if not self.counts_stretches:
+            return [path_residual(run, path) for run, path in zip(self.runs, self.paths(vehicle), strict=True)]
         return [(each / self.sizes).ravel() for each in self.errors(vehicle)]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch."""
+        if not self.counts_stretches:
+            return [stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1))
+                    for run, path, jacobian in zip(self.runs, self.paths(vehicle), jacobians, strict=True)]
         return [np.einsum("sc,scp->sp", each / self.sizes, jacobian.reshape(*each.shape, -1))
                 for each, jacobian in zip(self.errors(vehicle), jacobians, strict=True)]
 
@@ -76,7 +91,8 @@ class SteeredEvidence(RollingEvidence):
             return parameters.vehicle(base, parameters.values(z))
 
         def residual(z: np.ndarray) -> np.ndarray:
-            return np.concatenate([*(each.ravel() for each in self.errors(vehicle(z))), WEAK_PRIOR * z])
+            off = (stretch_errors(run, path) for run, path in zip(self.stretches, self.paths(vehicle(z)), strict=True))
+            return np.concatenate([*(each.ravel() for each in off), WEAK_PRIOR * z])
 
         start = np.array([INSIDE if p.group in LAGS else 0.0 for p in parameters.each])
         if len(parameters):

@@ -12,7 +12,7 @@ from laconic.robot.identify.evidence import MEASURE, errors_of, evidence_of, kin
 from laconic.robot.identify.ground import OF_TREES, base_of, need_currents
 from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, fit, values_by_name
-from laconic.robot.identify.steered import SLIPPING
+from laconic.robot.identify.steered import SLIPPING, with_measuring
 from laconic.robot.identify.steered_evidence import SteeredEvidence
 from laconic.robot.identify.words import in_words, with_errors
 from laconic.robot.identify.words_of_errors import of_errors
@@ -58,18 +58,20 @@ class Study:
 
 
 def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge: Sequence[Log] = (),
-             leave_out: str | None = None, with_controller: bool = False,
+             leave_out: str | None = None, with_controller: bool = False, whole: bool = False,
              advance: Callable[..., None] = lambda *_, **__: None) -> Study:
-    """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it."""
+    """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it. `whole`: by whole
+    paths, for an audit of a vehicle with hinges, whose fit counts stretches otherwise."""
     runs, others = (fitting(scene, given) for given in (logs, judge))
+    parameters = with_measuring(scene, [*runs, *others], parameters)
     need_currents(parameters, runs, scene)
-    found = _fit(scene, runs, parameters)
+    found = _fit(scene, runs, parameters, whole=whole)
     advance()
     controller = controller_of(runs) if with_controller else None
     fitted = fitted_scene(scene, found)
     left = _left_out(scene, runs, parameters, found, leave_out, advance, with_controller) if leave_out else []
     without = _without_slip(scene, runs, others, parameters, leave_out, advance)
-    study = Study(scene, runs, found, in_words(scene, found, runs), errors_of(scene, runs, parameters),
+    study = Study(scene, runs, found, in_words(scene, found, runs, not whole), errors_of(scene, runs, parameters),
                   errors_of(fitted, runs, parameters), left, errors_of(fitted, others, parameters) if others else [],
                   errors_of(scene, others, parameters) if others else [], controller,
                   MEASURE[kind_of(runs, parameters)], without)
@@ -90,8 +92,9 @@ def parts(logs: Sequence[Log], leave_out: str) -> list[list[Log]]:
     return [[log for log in logs if log.path.resolve().parent == folder] for folder in folders]
 
 
-def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters, start: Fit | None = None) -> Fit:
-    base, evidence = base_of(scene, parameters), evidence_of(scene, logs, parameters)
+def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters, start: Fit | None = None,
+         whole: bool = False) -> Fit:
+    base, evidence = base_of(scene, parameters), evidence_of(scene, logs, parameters, whole)
     if isinstance(evidence, SteeredEvidence):
         begun = values_by_name(start) if start is not None else _near(scene, logs, parameters, evidence)
         evidence.sized(base, parameters, begun)

@@ -25,7 +25,7 @@ from laconic.scene.ground import slips
 WEAK = 1.0            # information in units of the prior: below it the runs say less than was known beforehand
 PARTS = 0.35          # a parameter is named where its share in a combination is at least so much of the largest
 TELLS_ALL = "The runs tell every parameter better than it was known before."
-STEERED = ("log.", "vehicle.", "ground.")   # paths of parameters of steered vehicles; those of an audit differ
+LEAST_LEFT = 1e-15     # of the uncertainty beforehand: sums in double precision know no less
 HELPS = 0.9           # of the uncertainty: a run that leaves more is no advice
 SAMPLES, PERIOD_S = 200, 0.05
 MOTIONS = {
@@ -34,13 +34,13 @@ MOTIONS = {
     "a circle sideways": (0.0, 0.3, 0.4)}
 
 
-def in_words(scene: Scene, found: Fit, runs: Sequence[Log]) -> list[str]:
-    """Sentences; every number is computed. `runs`: those of the fit, as the next one will be of their kind."""
+def in_words(scene: Scene, found: Fit, runs: Sequence[Log], advises: bool = True) -> list[str]:
+    """Sentences; every number is computed. `runs`: those of the fit, as the next one will be of their kind; `advises`:
+    which one would tell most."""
     assert found.asked is not None and found.asked_information is not None
     size, directions = np.linalg.eigh(found.information)
     weak = [each for each in zip(size, directions.T, strict=True) if each[0] < WEAK]
-    candidates = candidate_information(scene, found, runs) if (weak or found.untold) and (
-        not scene.has_hinges or all(p.path.startswith(STEERED) for p in found.asked.each)) else {}
+    candidates = candidate_information(scene, found, runs) if advises and (weak or found.untold) else {}
     words = [_untold(name, found, candidates) for name in found.untold]
     hint = _hint(found, runs)
     words += [_weak(found, strength, direction, candidates, hint) for strength, direction in weak]
@@ -129,7 +129,7 @@ def advice(found: Fit, direction: np.ndarray, candidates: dict[str, np.ndarray])
     now = found.asked_information + np.eye(len(direction))
 
     def left(more: np.ndarray) -> float:
-        return float(direction @ np.linalg.solve(now + more, direction))
+        return max(float(direction @ np.linalg.solve(now + more, direction)), LEAST_LEFT)  # rounding may go below 0
 
     before = left(np.zeros_like(now))
     best = min(candidates, key=lambda name: left(candidates[name]), default="")

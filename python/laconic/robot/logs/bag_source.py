@@ -256,14 +256,16 @@ def _on_one_clock(topics: dict[str, Samples], stamps: str) -> tuple[dict[str, Sa
     if begin <= end:
         unstamped = [name for name, each in topics.items() if not each.has_stamps]
         if unstamped and len(unstamped) < len(topics):
-            return topics, [f"{', '.join(unstamped)}: messages have no stamps, and the instants of their arrival count"]
+            return topics, [f"{', '.join(unstamped)}: its messages have no time stamps, so the times of recording are "
+                            "used; publish a type with a header if recording is late"]
         return topics, []
     by_arrival = _by_arrival(topics)
     begin, end = (pick(edge(each.stamp_ns) for each in by_arrival.values()) for pick, edge in (
         (max, np.min), (min, np.max)))
     if begin > end:
         return topics, []  # the rows will say that they share no time
-    return by_arrival, ["the stamps of the topics are on clocks that share no time, so the instants of arrival count"]
+    return by_arrival, ["the time stamps of the topics have no time in common, so the times of recording are used; "
+                        "synchronise the clocks of the computers"]
 
 
 def _by_arrival(topics: Mapping[str, Samples]) -> dict[str, Samples]:
@@ -344,10 +346,10 @@ def _age(samples: Samples, is_main: bool) -> str:
     age = (samples.arrival_ns - samples.stamp_ns) / 1e9
     if not len(apart):
         return f"{samples.topic}: 1 message"
-    by = "stamps" if samples.has_stamps else "instants of arrival"
-    how = "which make the rows" if is_main else f"joined to the rows by their {by}"
-    text = (f"{samples.topic}: {len(age)} messages, {how}, {np.median(apart):.3g} s apart in the median and "
-            f"{apart.max():.3g} s at most")
+    text = (f"{samples.topic}: {len(age)} messages, {np.median(apart):.3g} s apart in the median and "
+            f"{apart.max():.3g} s at most; ")
+    text += "each message is one row of the run" if is_main else (
+        f"assigned to the rows by their {'time stamps' if samples.has_stamps else 'times of recording'}")
     if samples.has_stamps and np.abs(age).max() > OFTEN:
         text += f"; recorded {np.median(age):.3g} s after their stamps in the median, {age.max():.3g} s at most"
     return text

@@ -15,13 +15,10 @@ from laconic.errors import BadInput
 from laconic.robot.bags.messages import GIVE, Recording, Topic, is_bag, parts_of_message
 from laconic.robot.bags.samples import (
     TF,
-    all_topics,
     is_ulog,
     recordings,
     sample_messages,
-    topic_of,
     topics_in,
-    topics_of_ulog,
 )
 from laconic.robot.logs.bag_source import POSES, own_name, read_mat
 from laconic.robot.logs.column_map import ColumnMap, map_of
@@ -399,21 +396,3 @@ def _columns(rows: Sequence[Sequence[str]], titles: Sequence[str],
             values = [_number(cell, decimal) for cell in cells]
             columns[title] = np.array([np.nan if value is None else value for value in values])
     return columns, texts
-
-
-def lines_of_fields(path: Path, topic: str) -> list[str]:
-    """The fields of a topic as a map names them, with the values of its first message."""
-    if not is_bag(path):
-        raise BadInput(f"--fields {topic}: {path} has no topics; leave it out")
-    if is_ulog(path):
-        data = topics_of_ulog(path).get(topic)
-        fields = {} if data is None else data.data
-        return [f"{topic}.{name} = {values[0]}" for name, values in fields.items()] or [f"{topic} has no fields"]
-    with recordings(path) as parts:
-        found_topic = topic_of(path, all_topics(parts), topic)
-        name = found_topic.name
-        found_topic.decoder()  # says why it cannot be decoded
-        found = sample_messages(parts, [name])
-    if name not in found:
-        raise BadInput(f"{path}: {name} has no message that can be decoded; choose another topic")
-    return [f"{name}.{field} = {value!r}" for field, value in parts_of_message(found[name])]

@@ -190,18 +190,29 @@ def seen_by_tracker(path: np.ndarray, time_s: np.ndarray, log: Log, point: tuple
                     own: OfLog) -> np.ndarray:
     """Poses of the tracker as a log has them, of the body's path at `time_s`; from no certain place. Commands have been
     shifted by the clocks already."""
-    x, y, heading = late(path, time_s, log.time_s, 0.0 if by_commands(log) else own.clock_lag_s).T
+    lag_s = 0.0 if by_commands(log) else own.clock_lag_s
+    x, y, heading = late(path, time_s, log.time_s, lag_s, _held_ends(log)).T
     cos, sin = np.cos(heading), np.sin(heading)
     ahead, left = point[0] + own.tracker_x_m, point[1] + own.tracker_y_m
     return np.column_stack([x + cos * ahead - sin * left, y + sin * ahead + cos * left,
                             heading + own.tracker_heading_rad])
 
 
-def late(path: np.ndarray, time_s: np.ndarray, wanted_s: np.ndarray, lag_s: float) -> np.ndarray:
-    """A path so much earlier than wanted; before its first instant and after its last it goes straight on."""
+def _held_ends(log: Log) -> tuple[bool, bool]:
+    """Whether the log repeats its first pose, and its last: who joined it had none there."""
+    if log.pose is None or len(log.pose) < 2:
+        return False, False
+    places = log.pose[:, :2]
+    return bool((places[0] == places[1]).all()), bool((places[-1] == places[-2]).all())
+
+
+def late(path: np.ndarray, time_s: np.ndarray, wanted_s: np.ndarray, lag_s: float,
+         held: tuple[bool, bool] = (False, False)) -> np.ndarray:
+    """A path so much earlier than wanted; before its first instant and after its last it goes straight on, or stays
+    where the log holds its poses."""
     if lag_s == 0.0 and len(time_s) == len(wanted_s):
         return path
-    at = wanted_s - lag_s
+    at = np.clip(wanted_s - lag_s, time_s[0] if held[0] else None, time_s[-1] if held[1] else None)
     part = np.clip(np.searchsorted(time_s, at) - 1, 0, len(time_s) - 2)
     share = (at - time_s[part]) / (time_s[part + 1] - time_s[part])
     found: np.ndarray = path[part] + share[:, None] * (path[part + 1] - path[part])
