@@ -58,3 +58,36 @@ add_custom_target(laconic_venv ALL DEPENDS "${LACONIC_VENV_STAMP}")
 add_dependencies(laconic_venv laconic_venv_pip)
 add_custom_target(laconic_venv_all ALL DEPENDS "${all_stamp}")
 add_dependencies(laconic_venv_all laconic_venv)
+
+# -DLACONIC_PEERS=ON: the programs that `laconic report` compares speed with, in build/peers, apart from the
+# environment that everything else uses; a path file in it makes them importable, after all else. SUNDIALS CVODE comes
+# from the system (Debian: libsundials-dev).
+if(LACONIC_PEERS)
+    set(peers_lock "${PROJECT_SOURCE_DIR}/host_tests/requirements-peers.txt")
+    set(peers_stamp "${CMAKE_BINARY_DIR}/peers/laconic.stamp")
+    string(CONCAT name_peers "import pathlib, sysconfig; pathlib.Path(sysconfig.get_path('purelib'), 'laconic_peers.pth')"
+                             ".write_text(r'${CMAKE_BINARY_DIR}/peers' + '\\n', encoding='utf-8')")
+    add_custom_command(
+        OUTPUT "${peers_stamp}"
+        COMMAND "${LACONIC_PYTHON}" -m pip install --quiet --no-input --require-hashes --no-deps --upgrade
+                --target "${CMAKE_BINARY_DIR}/peers" -r "${peers_lock}"
+        COMMAND "${LACONIC_PYTHON}" -c "${name_peers}"
+        COMMAND "${CMAKE_COMMAND}" -E touch "${peers_stamp}"
+        DEPENDS "${peers_lock}"
+        COMMENT "Other integrators to compare with" USES_TERMINAL VERBATIM)
+    add_custom_target(laconic_peers ALL DEPENDS "${peers_stamp}")
+    add_dependencies(laconic_peers laconic_venv)
+endif()
+
+# laconic_declarations(<target> <header>): the header's declarations, as the tables of cffi beside it (….py).
+function(laconic_declarations target header)
+    cmake_path(REPLACE_EXTENSION header LAST_ONLY py OUTPUT_VARIABLE tables)
+    set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../packaging/laconic_build/declarations.py")
+    add_custom_command(
+        OUTPUT "${tables}"
+        COMMAND "${LACONIC_PYTHON}" "${script}" --header "${header}" --out "${tables}"
+        DEPENDS "${header}" "${script}"
+        COMMENT "Declarations for Python: ${target}" VERBATIM)
+    add_custom_target(${target} ALL DEPENDS "${tables}")
+    add_dependencies(${target} laconic_venv)
+endfunction()

@@ -45,7 +45,7 @@ endif()
 
 file(GLOB_RECURSE scene_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/core_c/src/*.c"
     "${PROJECT_SOURCE_DIR}/core_c/optional/articulated/*.c")
-include("${PROJECT_SOURCE_DIR}/core_c/cmake/LaconicFolders.cmake")
+include("${PROJECT_SOURCE_DIR}/core_c/cmake/LaconicCore.cmake")
 add_library(laconic_scene STATIC ${scene_sources} "${scene_folder}/laconic_scene_model.c")
 laconic_strict(laconic_scene)
 target_include_directories(laconic_scene PUBLIC "${PROJECT_SOURCE_DIR}/core_c/include" "${scene_folder}"
@@ -54,7 +54,6 @@ target_compile_definitions(laconic_scene PUBLIC LACONIC_SCENE_HEADER="laconic_sc
 if(scene_real STREQUAL "single")
     target_compile_definitions(laconic_scene PUBLIC LACONIC_SINGLE)
 else()
-    include("${PROJECT_SOURCE_DIR}/core_c/cmake/LaconicSoftDouble.cmake")
     laconic_soft_double(laconic_scene)
 endif()
 set_target_properties(laconic_scene PROPERTIES ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")

@@ -1,5 +1,5 @@
 /* count STEPS: takes that many steps and writes the state; a step takes (I(2n) − I(n))/n instructions. */
-#include "write_state.h"
+#include "bench.h"
 
 #include <stdio.h>
 #include <stdlib.h>

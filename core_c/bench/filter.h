@@ -3,8 +3,8 @@
 #ifndef BENCH_FILTER_H
 #define BENCH_FILTER_H
 
+#include "bench.h"
 #include "laconic/filter.h"
-#include "write_state.h"
 
 typedef struct bench_reading { /* of one cycle */
     laconic_real voltage_V[LACONIC_MAX_WHEELS], turned_rad[LACONIC_MAX_WHEELS];

@@ -1,5 +1,12 @@
-# What the whole project makes of the core besides the library: shared libraries for Python, the header in a form that
-# cffi reads (preprocessed, without the compiler's own headers), the check of purity, the tests.
+# What the whole project makes of the core besides the library: shared libraries for Python, the header's declarations for
+# cffi (preprocessed, without the compiler's own headers), the check of purity, the tests.
+
+# How the preprocessor makes declarations for cffi, which knows the standard types: the compiler's headers are empty.
+set(empty_headers "${CMAKE_BINARY_DIR}/core_c/empty_headers")
+foreach(header float stdbool stddef stdint)
+    file(CONFIGURE OUTPUT "${empty_headers}/${header}.h" CONTENT "")
+endforeach()
+set(LACONIC_CDEF_FLAGS -E -P -nostdinc -DLACONIC_CDEF -I "${empty_headers}" CACHE INTERNAL "Also for the node's library")
 
 function(laconic_development real)
     add_library(laconic_shared_${real} SHARED $<TARGET_OBJECTS:laconic_objects_${real}>)
@@ -15,11 +22,10 @@ function(laconic_development real)
     set(cdef "${CMAKE_BINARY_DIR}/lib/laconic_cdef_${real}.h")
     add_custom_command(
         OUTPUT "${cdef}"
-        COMMAND "${CMAKE_C_COMPILER}" -E -P -nostdinc $<$<STREQUAL:${real},single>:-DLACONIC_SINGLE>
-                -I "${CMAKE_CURRENT_SOURCE_DIR}/cdef" -I "${CMAKE_CURRENT_SOURCE_DIR}/include"
-                "${CMAKE_CURRENT_SOURCE_DIR}/cdef/headers.h" -o "${cdef}"
-        DEPENDS ${core_headers} "${CMAKE_CURRENT_SOURCE_DIR}/cdef/headers.h" COMMAND_EXPAND_LISTS VERBATIM)
-    add_custom_target(laconic_cdef_${real} ALL DEPENDS "${cdef}")
+        COMMAND "${CMAKE_C_COMPILER}" ${LACONIC_CDEF_FLAGS} $<$<STREQUAL:${real},single>:-DLACONIC_SINGLE>
+                -I "${CMAKE_CURRENT_SOURCE_DIR}/include" "${CMAKE_CURRENT_SOURCE_DIR}/cdef.h" -o "${cdef}"
+        DEPENDS ${core_headers} "${CMAKE_CURRENT_SOURCE_DIR}/cdef.h" COMMAND_EXPAND_LISTS VERBATIM)
+    laconic_declarations(laconic_cdef_${real} "${cdef}")
     if(real STREQUAL "double") # the list of methods, for an installed package that has this build tree alone
         configure_file(include/laconic/methods.h "${CMAKE_BINARY_DIR}/lib/laconic_methods.h" COPYONLY)
     endif()

@@ -62,10 +62,10 @@ static laconic_real speed_loop(laconic_wheel_drive *drive, laconic_real set_rad_
             within(drive, set_rad_per_s, -s->speed_limit_rad_per_s, s->speed_limit_rad_per_s, LACONIC_DRIVE_AT_SPEED);
     const laconic_real error = set_rad_per_s - drive->speed_rad_per_s;
     const laconic_real integral = drive->integral_A + s->speed_integral_gain_A * error * step_s;
-    const laconic_real wanted = s->speed_gain_As * error + drive->target.current_A + integral;
-    const laconic_real given = limit_current(drive, wanted);
-    if (wanted == given || (wanted - given) * error < 0) drive->integral_A = integral;
-    return given;
+    const laconic_real sum_A = s->speed_gain_As * error + drive->target.current_A + integral;
+    const laconic_real current_A = limit_current(drive, sum_A);
+    if (sum_A == current_A || (sum_A - current_A) * error < 0) drive->integral_A = integral;
+    return current_A;
 }
 
 static laconic_real set_current(laconic_wheel_drive *drive, laconic_real step_s) {
@@ -84,9 +84,10 @@ static laconic_real current_loop(laconic_wheel_drive *drive, laconic_real set_A,
 
 /* No motion for the settings' time though the current is at a limit. */
 static void watch_for_stall(laconic_wheel_drive *drive, laconic_real step_s) {
-    const uint64_t moved = (uint64_t)drive->encoder.count - (uint64_t)drive->stalled_count; /* 2^64 − 1: one back */
+    const uint64_t way_counts =
+        (uint64_t)drive->encoder.count - (uint64_t)drive->stalled_count; /* 2^64 − 1: one back */
     const bool pushes = (drive->limits & (LACONIC_DRIVE_AT_CURRENT | LACONIC_DRIVE_AT_SUPPLY)) != 0;
-    if (drive->settings.stall_time_s > 0 && pushes && moved + 1U <= 2U) {
+    if (drive->settings.stall_time_s > 0 && pushes && way_counts + 1U <= 2U) {
         drive->stalled_s += step_s;
         if (drive->stalled_s >= drive->settings.stall_time_s) laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_STALL);
     } else {
@@ -126,7 +127,7 @@ laconic_real laconic_drive_follow(laconic_wheel_drive *drive) {
     const laconic_real limit = drive->settings.speed_limit_rad_per_s;
     const bool by_place = drive->target.mode == LACONIC_DRIVE_POSITION;
     drive->limits = 0;
-    if (drive->faults != 0 || (drive->target.mode != LACONIC_DRIVE_SPEED && !by_place)) return 0;
+    if (drive->faults != 0 || drive->brake_Nm > 0 || (drive->target.mode != LACONIC_DRIVE_SPEED && !by_place)) return 0;
     laconic_real set_rad_per_s = by_place ? position_loop(drive) : drive->target.speed_rad_per_s;
     if (limit > 0) set_rad_per_s = within(drive, set_rad_per_s, -limit, limit, LACONIC_DRIVE_AT_SPEED);
     const laconic_real rate_rad_per_s = set_rad_per_s / drive->settings.gear_ratio;

@@ -20,8 +20,8 @@ static const checked_number numbers[] = {LACONIC_DRIVES_WHEEL_ROWS(ROW, )};
 
 static laconic_status refuse(laconic_refusal *why, laconic_status status, int32_t field, int32_t item,
                              laconic_real value, laconic_real limit) {
-    const laconic_refusal found = {status, (laconic_field)field, item, value, limit};
-    if (why != NULL) *why = found;
+    const laconic_refusal refusal = {status, (laconic_field)field, item, value, limit};
+    if (why != NULL) *why = refusal;
     return status;
 }
 

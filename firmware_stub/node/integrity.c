@@ -247,8 +247,8 @@ static bool is_possible(const laconic_node *node, const laconic_integrity_limits
 /* One slice further; at the end of a round, whether all is as it was. */
 static void see_slice(laconic_integrity *it, laconic_node *node) {
     const memory_part *here = &model_parts[it->part];
-    const uint32_t left = here->size - it->at;
-    const uint32_t count = left < LACONIC_INTEGRITY_SLICE ? left : LACONIC_INTEGRITY_SLICE;
+    const uint32_t rest_bytes = here->size - it->at;
+    const uint32_t count = rest_bytes < LACONIC_INTEGRITY_SLICE ? rest_bytes : LACONIC_INTEGRITY_SLICE;
     add_bytes(&it->running, (const uint8_t *)node + here->offset + it->at, count);
     it->slices++;
     it->at += count;
@@ -407,7 +407,7 @@ bool laconic_integrity_next_frame(laconic_integrity *integrity, laconic_node *no
         fail(integrity, node, LACONIC_INTEGRITY_OF_MOTION);
         seal_motion(integrity, node);
     }
-    const bool found = laconic_node_next_frame(node, frame);
+    const bool is_there = laconic_node_next_frame(node, frame);
     if (checked) integrity->queue = sum_of_queue(node);
-    return found;
+    return is_there;
 }

@@ -61,8 +61,8 @@ void laconic_loader_begin(laconic_loader *loader) {
 static const location *find(uint8_t field, uint8_t item) {
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
         if (locations[k].field != field) continue;
-        const bool fits = locations[k].items == 0 ? item == 0 : item >= 1 && item <= locations[k].items;
-        return fits ? &locations[k] : NULL;
+        const bool is_within = locations[k].items == 0 ? item == 0 : item >= 1 && item <= locations[k].items;
+        return is_within ? &locations[k] : NULL;
     }
     return NULL;
 }
@@ -177,8 +177,8 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
                frame.field, frame.item);
         return;
     }
-    laconic_loader_items *given = &loader->given[where - locations];
-    *given = (laconic_loader_items)(*given | (uint32_t)1 << frame.item);
+    laconic_loader_items *items = &loader->given[where - locations];
+    *items = (laconic_loader_items)(*items | (uint32_t)1 << frame.item);
     uint8_t *to = (uint8_t *)&loader->parameters + where->offset;
     if (where->items > 0) to += (size_t)where->stride * (size_t)(frame.item - 1);
     const uint8_t kind = where->kind_and_need & 15U;
@@ -193,10 +193,10 @@ static laconic_field_need need_of(const location *where) { return (laconic_field
 
 /* Whether any field with that need has come. */
 static bool any_given(const laconic_loader *loader, laconic_field_need need) {
-    uint32_t given = 0;
+    uint32_t items = 0;
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++)
-        if (need_of(&locations[k]) == need) given |= loader->given[k];
-    return given != 0;
+        if (need_of(&locations[k]) == need) items |= loader->given[k];
+    return items != 0;
 }
 
 /* Whether this item of a field with that need must have come. The core refuses counts beyond the largest number of
@@ -234,8 +234,8 @@ static bool something_is_missing(const laconic_loader *loader, uint8_t *field, u
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
         *field = locations[k].field;
         for (*item = locations[k].items > 0; *item <= locations[k].items; ++*item) {
-            const bool given = (loader->given[k] >> *item & 1U) != 0;
-            if (!given && is_needed(loader, need_of(&locations[k]), *item) && is_of_one(loader, *field, *item))
+            const bool is_there = (loader->given[k] >> *item & 1U) != 0;
+            if (!is_there && is_needed(loader, need_of(&locations[k]), *item) && is_of_one(loader, *field, *item))
                 return true;
         }
     }

@@ -144,9 +144,9 @@ laconic_node_result laconic_node_parameter(laconic_node *node, const uint8_t *da
     const laconic_loader *loader = &node->loader;
 #if LACONIC_NODE_WITH_DRIVES && LACONIC_NODE_WITH_DRIVE_FAULTS
     if (data[2] == LACONIC_WIRE_FIELD_DRIVE_FAULTS) { /* an order for now, no number of a vehicle */
-        const laconic_node_result ordered = {0, LACONIC_WIRE_COMMAND_PARAMETER, laconic_node_order_drive(node, data),
+        const laconic_node_result outcome = {0, LACONIC_WIRE_COMMAND_PARAMETER, laconic_node_order_drive(node, data),
                                              data[2], data[3]};
-        return ordered;
+        return outcome;
     }
 #endif
     laconic_loader_take(&node->loader, data);
@@ -222,10 +222,10 @@ laconic_node_result laconic_node_commit(laconic_node *node, const uint8_t *data)
 #define ESTIMATE_LEFT_OUT 0U
 
 /* The estimate begins here, with no error; a vehicle must be there. */
-static uint8_t select_estimate(laconic_node *node, bool wanted, laconic_node_result *answer) {
+static uint8_t select_estimate(laconic_node *node, bool is_on, laconic_node_result *answer) {
     laconic_refusal why = {0};
-    if (!wanted) node->estimates = false;
-    if (!wanted) return 0;
+    if (!is_on) node->estimates = false;
+    if (!is_on) return 0;
     if (!has_model(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
     const laconic_status status = laconic_node_start_estimate(node, &why);
     answer->field = (uint8_t)why.field;

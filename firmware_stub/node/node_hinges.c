@@ -27,13 +27,13 @@ static void join(laconic_articulated_vehicle *whole, const laconic_parameters *n
 
 #if LACONIC_NODE_WITH_SLIP
 
-static laconic_status prepare_tree(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+static laconic_status prepare_tree(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {
     laconic_tree_vehicle vehicle;
     memset(&vehicle, 0, sizeof vehicle);
     join(&vehicle.hinged, new);
     memcpy(vehicle.hinge, new->bodies.tree_hinge, sizeof vehicle.hinge);
     memcpy(vehicle.wheel, new->bodies.tree_wheel, sizeof vehicle.wheel);
-    return laconic_tree_prepare(&found->tree_model, &vehicle, why);
+    return laconic_tree_prepare(&fresh->tree_model, &vehicle, why);
 }
 
 static laconic_status refuse_run(laconic_refusal *why, laconic_status status, laconic_field field) {
@@ -42,22 +42,30 @@ static laconic_status refuse_run(laconic_refusal *why, laconic_status status, la
     return status;
 }
 
-/* What the frames of every vehicle with hinges read of its model. */
-static void describe_tree(laconic_node_hinges *found, laconic_real step_s) {
-    const laconic_tree_model *m = &found->tree_model;
-    found->slips = true;
-    found->integrator.step_s = step_s;
-    found->model.wheel_count = m->wheel_count;
-    found->model.body_count = m->body_count;
+/* Whether something leads a hinge: a command its rate, or a servo or loop its angle. */
+static laconic_hinge_motion motion_of_hinge(const laconic_tree_body *body) {
+    const bool led = body->servo || body->loop_V_per_rad != 0 || body->loop_Vs_per_rad != 0;
+    if (body->hinge == LACONIC_HINGE_PRESCRIBED) return LACONIC_MOTION_PRESCRIBED;
+    return led ? LACONIC_MOTION_FOLLOWING : LACONIC_MOTION_OWN;
+}
+
+/* What frames and drives of every vehicle with hinges read of its model. */
+static void describe_tree(laconic_node_hinges *fresh, laconic_real step_s) {
+    const laconic_tree_model *m = &fresh->tree_model;
+    fresh->slips = true;
+    fresh->integrator.step_s = step_s;
+    fresh->model.wheel_count = m->wheel_count;
+    fresh->model.body_count = m->body_count;
+    for (int32_t b = 0; b < m->body_count; b++) fresh->model.link[b].motion = motion_of_hinge(&m->body[b + 1]);
 }
 
 /* One step of auto; a whole number of it is checked by each step. */
-static laconic_status find_tree(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+static laconic_status find_tree(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {
     if (new->method != LACONIC_ARTICULATED_AUTO)
         return refuse_run(why, LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_FIELD_METHOD);
     if (!(new->step_s > 0)) return refuse_run(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
-    const laconic_status status = prepare_tree(found, new, why);
-    if (status == LACONIC_OK) describe_tree(found, new->step_s);
+    const laconic_status status = prepare_tree(fresh, new, why);
+    if (status == LACONIC_OK) describe_tree(fresh, new->step_s);
     return status;
 }
 
@@ -81,57 +89,52 @@ static bool is_to_slip(const laconic_parameters *new) {
 #endif
 }
 
-static laconic_status prepare(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
+static laconic_status prepare(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {
     laconic_articulated_vehicle whole;
 #if LACONIC_NODE_WITH_SLIP
-    if (is_to_slip(new)) return find_tree(found, new, why);
+    if (is_to_slip(new)) return find_tree(fresh, new, why);
 #endif
     memset(&whole, 0, sizeof whole);
     join(&whole, new);
-    const laconic_status status = laconic_articulated_prepare(&found->model, &whole, why);
+    const laconic_status status = laconic_articulated_prepare(&fresh->model, &whole, why);
     if (status != LACONIC_OK) return status;
-    return laconic_articulated_integrator_prepare(&found->integrator, new->method, &found->model, new->step_s, why);
+    return laconic_articulated_integrator_prepare(&fresh->integrator, new->method, &fresh->model, new->step_s, why);
 }
 
-static laconic_status set_start(laconic_node_hinges *hinges, const laconic_start *given, laconic_refusal *why) {
+static laconic_status set_start(laconic_node_hinges *hinges, const laconic_start *start, laconic_refusal *why) {
 #if LACONIC_NODE_WITH_SLIP
-    if (hinges->slips) return set_tree_start(hinges, given->wheel_speed_rad_per_s, why);
+    if (hinges->slips) return set_tree_start(hinges, start->wheel_speed_rad_per_s, why);
 #endif
-    (void)given;
+    (void)start;
     return laconic_articulated_state_set(&hinges->state, NULL, &hinges->model, &hinges->start, &hinges->first, why);
 }
 
 /* The loaded vehicle, its step and its start. */
-static laconic_status find(laconic_node_hinges *found, const laconic_parameters *new, laconic_refusal *why) {
-    const laconic_status status = prepare(found, new, why);
+static laconic_status find(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {
+    const laconic_status status = prepare(fresh, new, why);
     if (status != LACONIC_OK) return status;
-    found->here = true;
-    found->start = new->bodies.start;
-    found->start.x_m = new->start.x_m;
-    found->start.y_m = new->start.y_m;
-    found->start.heading_rad = new->start.heading_rad;
-    memcpy(found->first.hinge_rate_rad_per_s, new->bodies.hinge_rate_rad_per_s,
+    fresh->here = true;
+    fresh->start = new->bodies.start;
+    fresh->start.x_m = new->start.x_m;
+    fresh->start.y_m = new->start.y_m;
+    fresh->start.heading_rad = new->start.heading_rad;
+    memcpy(fresh->first.hinge_rate_rad_per_s, new->bodies.hinge_rate_rad_per_s,
            sizeof new->bodies.hinge_rate_rad_per_s);
-    memcpy(found->first.twist, new->bodies.twist, sizeof new->bodies.twist);
-    return set_start(found, &new->start, why);
+    memcpy(fresh->first.twist, new->bodies.twist, sizeof new->bodies.twist);
+    return set_start(fresh, &new->start, why);
 }
 
 #if LACONIC_NODE_WITH_DRIVES
-/* A drive turns a wheel, or a hinge that nothing else moves: neither its own wheels nor a twist. */
-static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *found, uint8_t *field, uint8_t *item) {
+/* A drive turns a wheel, or a hinge that nothing else moves: neither its own wheels nor a twist, servo or loop. */
+static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *fresh, uint8_t *field, uint8_t *item) {
     const laconic_drive_plan *plan = &node->loader.parameters.drives;
-    const laconic_articulated_model *m = &found->model;
-    if (plan->protocol != 0 && is_to_slip(&node->loader.parameters)) {
-        *field = LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
-        *item = 0;
-        return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-    }
+    const laconic_articulated_model *m = &fresh->model;
     const uint8_t status = laconic_node_check_drives(node, plan, m->wheel_count + m->body_count, field, item);
     if (status != 0) return status;
     for (int32_t b = 0; b < m->body_count; b++) {
         const laconic_hinge_motion motion = m->link[b].motion;
-        const bool turns = motion == LACONIC_MOTION_OWN || motion == LACONIC_MOTION_PRESCRIBED;
-        if (plan->protocol == 0 || turns || plan->drive[m->wheel_count + b].node_id < 0) continue;
+        const bool is_own = motion == LACONIC_MOTION_OWN || motion == LACONIC_MOTION_PRESCRIBED;
+        if (plan->protocol == 0 || is_own || plan->drive[m->wheel_count + b].node_id < 0) continue;
         *field = LACONIC_DRIVES_FIELD_DRIVE_NODE_ID;
         *item = (uint8_t)(m->wheel_count + b + 1);
         return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
@@ -148,17 +151,17 @@ static void count_in_plant(laconic_node *node) {
 }
 
 /* Frames that SELECT chose for the vehicle before stay chosen where this one has them. */
-static void adopt(laconic_node *node, const laconic_node_hinges *found) {
+static void adopt(laconic_node *node, const laconic_node_hinges *fresh) {
     const uint8_t send = node->hinges.send;
-    node->hinges = *found;
+    node->hinges = *fresh;
     node->hinges.send = send;
     node->send &= (uint8_t)~SENDS_NOT_OF_HINGES;
     node->raw_output.send &= (uint8_t)~RAW_NOT_OF_HINGES;
 #if LACONIC_NODE_WITH_SLIP
-    if (found->slips) node->raw_input.take &= (uint8_t)~LACONIC_RAW_SAMPLED;
-    node->raw_input.take_hinges &= (uint8_t)~(found->slips ? LACONIC_RAW_TWIST : LACONIC_RAW_STEERING_ANGLE);
+    if (fresh->slips) node->raw_input.take &= (uint8_t)~LACONIC_RAW_SAMPLED;
+    node->raw_input.take_hinges &= (uint8_t)~(fresh->slips ? LACONIC_RAW_TWIST : LACONIC_RAW_STEERING_ANGLE);
 #endif
-    node->raw_input.hinge_count = found->model.body_count;
+    node->raw_input.hinge_count = fresh->model.body_count;
 #if LACONIC_NODE_WITH_SENSORS
     memset(&node->sensors, 0, sizeof node->sensors);
     node->has_sensors = false;
@@ -172,20 +175,20 @@ static void adopt(laconic_node *node, const laconic_node_hinges *found) {
 
 uint8_t laconic_node_adopt_hinges(laconic_node *node, uint8_t *field, uint8_t *item) {
     const laconic_parameters *new = &node->loader.parameters;
-    laconic_node_hinges found;
+    laconic_node_hinges fresh;
     laconic_refusal why = {0};
     *field = not_of_hinges(new);
     if (*field != 0) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-    memset(&found, 0, sizeof found);
-    const laconic_status status = find(&found, new, &why);
+    memset(&fresh, 0, sizeof fresh);
+    const laconic_status status = find(&fresh, new, &why);
     *field = (uint8_t)why.field;
     *item = (uint8_t)why.item;
     if (status != LACONIC_OK) return (uint8_t)status;
 #if LACONIC_NODE_WITH_DRIVES
-    const uint8_t refused = check_drives(node, &found, field, item);
+    const uint8_t refused = check_drives(node, &fresh, field, item);
     if (refused != 0) return refused;
 #endif
-    adopt(node, &found);
+    adopt(node, &fresh);
     return 0;
 }
 
@@ -217,8 +220,8 @@ bool laconic_node_may_select_hinges(const laconic_node *node, const uint8_t *dat
     if (((data[5] & UNUSED_SENDS) | (data[6] & UNUSED_TAKES) | data[7]) != 0) return false;
     if (!node->hinges.here) return (data[5] | data[6]) == 0;
     const uint32_t raw = data[3] & 0x7FU & RAW_NOT_OF_HINGES;
-    const bool held = (data[4] & LACONIC_RAW_SAMPLED) == 0, angles = (data[6] & LACONIC_RAW_STEERING_ANGLE) != 0;
-    if (slips(node) ? !held || (data[6] & LACONIC_RAW_TWIST) != 0 : angles) return false;
+    const bool is_held = (data[4] & LACONIC_RAW_SAMPLED) == 0, angles = (data[6] & LACONIC_RAW_STEERING_ANGLE) != 0;
+    if (slips(node) ? !is_held || (data[6] & LACONIC_RAW_TWIST) != 0 : angles) return false;
     return (data[2] & SENDS_NOT_OF_HINGES) == 0 && raw == 0 && (data[4] & SELECTS_ESTIMATE) == 0;
 }
 
@@ -276,9 +279,9 @@ static void roll_along(laconic_vector *twist, const laconic_vector *row) {
 }
 
 /* The twist next to the given one that the carriage's own wheels allow, which scaled numbers seldom are. */
-static void set_twist(laconic_node_hinges *hinges, const laconic_real given[3]) {
+static void set_twist(laconic_node_hinges *hinges, const laconic_real twist[3]) {
     const laconic_articulated_model *m = &hinges->model;
-    laconic_vector at_com = {given[0] - given[2] * m->com_y_m, given[1] + given[2] * m->com_x_m, given[2]};
+    laconic_vector at_com = {twist[0] - twist[2] * m->com_y_m, twist[1] + twist[2] * m->com_x_m, twist[2]};
     for (int32_t k = 0; k < m->held_count; k++) roll_along(&at_com, &m->held[k]);
     hinges->input[1].twist[0] = at_com.x + at_com.z * m->com_y_m;
     hinges->input[1].twist[1] = at_com.y - at_com.z * m->com_x_m;
@@ -320,8 +323,8 @@ static bool set_three(laconic_node_hinges *hinges, bool voltages, int32_t first,
     for (int32_t k = 0; k < 3; k++) {
         const bool is_one = first + k < m->body_count;
         const laconic_link *link = &m->link[is_one ? first + k : 0];
-        const bool takes = voltages ? link->gain_Nm_per_V != 0 : link->motion == LACONIC_MOTION_PRESCRIBED;
-        if (number[k] != 0 && !(is_one && takes)) return false;
+        const bool has_effect = voltages ? link->gain_Nm_per_V != 0 : link->motion == LACONIC_MOTION_PRESCRIBED;
+        if (number[k] != 0 && !(is_one && has_effect)) return false;
     }
     for (int32_t k = 0; k < 3 && first + k < m->body_count; k++) {
         if (voltages) hinges->input[0].hinge_voltage_V[first + k] = number[k];
@@ -381,11 +384,11 @@ static laconic_status step_between(laconic_node *node, laconic_refusal *why) {
 /* Steps under the held input. */
 static laconic_status step_tree(laconic_node *node, uint64_t steps, laconic_refusal *why) {
     laconic_node_hinges *hinges = &node->hinges;
-    laconic_tree_input held = {.hinged = hinges->input[0]};
+    laconic_tree_input input = {.hinged = hinges->input[0]};
     laconic_status status = LACONIC_OK;
-    memcpy(held.hinge_angle_rad, hinges->angle_rad, sizeof held.hinge_angle_rad);
+    memcpy(input.hinge_angle_rad, hinges->angle_rad, sizeof input.hinge_angle_rad);
     for (; steps > 0 && status == LACONIC_OK; steps--) {
-        status = laconic_tree_step(&hinges->tree_model, hinges->integrator.step_s, &hinges->tree, &held, why);
+        status = laconic_tree_step(&hinges->tree_model, hinges->integrator.step_s, &hinges->tree, &input, why);
         if (status == LACONIC_OK) node->plant.steps++;
     }
     return status;
@@ -413,21 +416,6 @@ laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refu
     for (int k = 0; k < 2; k++) node->hinges.input[k].base = node->input[k];
     return step_between(node, why);
 }
-
-#if LACONIC_NODE_WITH_DRIVES
-laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
-    laconic_node_hinges *hinges = &node->hinges;
-    const laconic_articulated_state before = hinges->state;
-    laconic_drives_act_with_hinges(&node->drives, &hinges->model, &node->input[0], hinges->input, now_us);
-    hinges->changes = true;
-    const laconic_status status = laconic_node_step_hinges(node, 1, why);
-    if (status == LACONIC_OK)
-        laconic_drives_measure_with_hinges(&node->drives, &hinges->model, &before, &hinges->state);
-    else
-        laconic_drives_off(&node->drives);
-    return status;
-}
-#endif
 
 /* ------------------------------------------------------------------------------------- outputs -- */
 

@@ -25,16 +25,16 @@ void laconic_node_publish(laconic_node *node) {
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensor_outputs sensed;
     laconic_node_publish_sensors(node, &sensed);
-    const laconic_sensor_outputs *shown = &sensed;
+    const laconic_sensor_outputs *outputs = &sensed;
 #else
-    const laconic_sensor_outputs *shown = NULL;
+    const laconic_sensor_outputs *outputs = NULL;
 #endif
 #if LACONIC_NODE_WITH_HINGES
     if (has_hinges(node))
         laconic_node_collect_hinges(&node->raw_output, node);
     else
 #endif
-        laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], shown);
+        laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], outputs);
     if (node->raw_output.size > 0)
         node->pending |= node->raw_fd ? BIT_OF(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT_OF(LACONIC_WIRE_RAW_OUTPUT);
 }
@@ -162,16 +162,16 @@ void laconic_node_end_period(laconic_node *node) {
 
 /* All steps of a period, one by one while a master of XCP measures. */
 static laconic_status step_period(laconic_node *node, laconic_refusal *why) {
-    uint32_t left = node->free_run.steps_per_period;
+    uint32_t rest_steps = node->free_run.steps_per_period;
 #if LACONIC_NODE_WITH_XCP
-    for (; left > 0 && laconic_daq_runs(&node->xcp); left--) {
+    for (; rest_steps > 0 && laconic_daq_runs(&node->xcp); rest_steps--) {
         const laconic_status status = step(node, 1, why);
         if (status != LACONIC_OK) return status;
         laconic_daq_event(node);
     }
-    if (left == 0) return LACONIC_OK;
+    if (rest_steps == 0) return LACONIC_OK;
 #endif
-    return step(node, left, why);
+    return step(node, rest_steps, why);
 }
 
 void laconic_node_run_free(laconic_node *node, uint32_t now_us) {

@@ -110,9 +110,9 @@ static uint8_t build_checksum(laconic_node *node, const uint8_t *command) {
     xcp->answer.length = 8;
     put32(xcp->answer.data + 4, LACONIC_XCP_SEGMENT); /* in an answer that refuses it, the largest block */
     if (size == 0 || size > LACONIC_XCP_SEGMENT) return XCP_OUT_OF_RANGE;
-    for (uint32_t done = 0; done < size; done += SUM_BYTES) {
-        const uint32_t count = size - done < SUM_BYTES ? size - done : SUM_BYTES;
-        const uint8_t error = laconic_xcp_read(node, xcp->address + done, bytes, count);
+    for (uint32_t offset = 0; offset < size; offset += SUM_BYTES) {
+        const uint32_t count = size - offset < SUM_BYTES ? size - offset : SUM_BYTES;
+        const uint8_t error = laconic_xcp_read(node, xcp->address + offset, bytes, count);
         xcp->answer.length = error == XCP_DONE ? 8 : 2;
         if (error != XCP_DONE) return error;
         sum = laconic_crc32(sum, bytes, count);

@@ -54,13 +54,13 @@ static bool choose(const laconic_node *node, laconic_raw_output *raw, uint32_t b
 }
 
 static void collect(laconic_node *node, laconic_raw_output *raw) {
-    const laconic_sensor_outputs *shown = NULL;
+    const laconic_sensor_outputs *outputs = NULL;
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensor_outputs sensed;
     if ((raw->send & RAW_OF_SENSORS) != 0) {
         node->xcp.senses = true;
         laconic_sensors_read(&sensed, &node->sensors, &node->plant, &node->input[0]);
-        shown = &sensed;
+        outputs = &sensed;
     }
 #endif
 #if LACONIC_NODE_WITH_HINGES
@@ -69,7 +69,7 @@ static void collect(laconic_node *node, laconic_raw_output *raw) {
         return;
     }
 #endif
-    laconic_raw_collect(raw, &node->plant, &node->input[0], shown);
+    laconic_raw_collect(raw, &node->plant, &node->input[0], outputs);
 }
 
 /* Of one moment each output is collected once, as long as its numbers are read one after the other. */
@@ -227,9 +227,9 @@ void laconic_xcp_adopt(laconic_node *node, const laconic_vehicle *vehicle) {
 }
 
 static void tell_rig(laconic_node *node, const laconic_refusal *why) {
-    const laconic_node_result told = {0, LACONIC_WIRE_COMMAND_CALIBRATE, (uint8_t)why->status, (uint8_t)why->field,
-                                      (uint8_t)why->item};
-    laconic_node_answer(node, LACONIC_WIRE_HELLO, told); /* to which no other RESULT belongs */
+    const laconic_node_result result = {0, LACONIC_WIRE_COMMAND_CALIBRATE, (uint8_t)why->status, (uint8_t)why->field,
+                                        (uint8_t)why->item};
+    laconic_node_answer(node, LACONIC_WIRE_HELLO, result); /* to which no other RESULT belongs */
 }
 
 /* Rig and master learn status, field and item. */

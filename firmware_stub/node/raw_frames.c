@@ -67,7 +67,7 @@ static laconic_real *slot_of_hinge(const laconic_raw_input *raw, int32_t sample,
     }
     if (raw->take_hinges & LACONIC_RAW_TWIST) {
         if (k < 3) return &input->twist[k];
-        k -= 3;
+        k -= 3; /* GCOVR_EXCL_LINE: SELECT lets no vehicle have twists and angles */
     }
     return &raw->angle_rad[k];
 }
@@ -106,8 +106,8 @@ static void store(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_
 bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
                       uint8_t segment_mask, const uint8_t *bytes, uint8_t count) {
     if (raw->broken && segment == 0) laconic_raw_restart(raw);
-    const bool expected = !raw->broken && !raw->complete && segment == raw->segment;
-    if (!expected || numbers_of_each(raw, wheel_count) == 0) {
+    const bool is_next = !raw->broken && !raw->complete && segment == raw->segment;
+    if (!is_next || numbers_of_each(raw, wheel_count) == 0) {
         raw->broken = true;
         return false;
     }
@@ -212,8 +212,8 @@ void laconic_raw_collect_hinges(laconic_raw_output *raw, const laconic_articulat
 #endif
 
 bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room) {
-    const uint16_t left = (uint16_t)(raw->size - raw->position);
-    const uint8_t count = left < room ? (uint8_t)left : room;
+    const uint16_t rest_bytes = (uint16_t)(raw->size - raw->position);
+    const uint8_t count = rest_bytes < room ? (uint8_t)rest_bytes : room;
     memcpy(bytes, (const uint8_t *)raw->number + raw->position, count);
     memset(bytes + count, 0, (size_t)(room - count));
     raw->position = (uint16_t)(raw->position + count);

@@ -29,20 +29,21 @@ static uint16_t number_of(const laconic_gate *gate, uint32_t offset) { return (u
 
 /* The code of the frame that waits; any other ends its wait. */
 static bool take_code(laconic_gate *gate, const laconic_frame *frame, laconic_frame *out) {
-    const laconic_frame *held = &gate->held;
-    const bool fits = gate->waits && frame->length == CODE_BYTES && gate->id_base + frame->data[0] == held->id;
+    const laconic_frame *payload = &gate->held;
+    const bool is_code = gate->waits && frame->length == CODE_BYTES && gate->id_base + frame->data[0] == payload->id;
     gate->waits = false;
-    if (!fits) {
+    if (!is_code) {
         gate->bare++;
         return false;
     }
     uint64_t freshness = gate->freshness;
-    laconic_secoc_status status = laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness,
-                                                     held->data, held->length, frame->data + 1, LACONIC_SECOC_APART);
+    laconic_secoc_status status =
+        laconic_secoc_open(&gate->key, number_of(gate, frame->data[0]), &freshness, payload->data, payload->length,
+                           frame->data + 1, LACONIC_SECOC_APART);
     if (freshness >> 32 != gate->freshness >> 32) status = LACONIC_SECOC_SPENT;
     if (status == LACONIC_SECOC_OK) gate->freshness = freshness;
     gate->refused[status]++;
-    *out = *held;
+    *out = *payload;
     return status == LACONIC_SECOC_OK;
 }
 

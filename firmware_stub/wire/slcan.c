@@ -53,22 +53,22 @@ static bool kind_of(char letter, laconic_frame *frame) {
 
 /* The line must have exactly the length that its DLC states. */
 static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
-    laconic_frame read = {0};
+    laconic_frame result = {0};
     uint32_t dlc;
     uint32_t byte;
-    if (!kind_of(line[0], &read)) return false; /* the caller has asked the same before */
-    const size_t id_digits = read.extended ? 8 : 3;
+    if (!kind_of(line[0], &result)) return false; /* the caller has asked the same before */
+    const size_t id_digits = result.extended ? 8 : 3;
     if (length < 1U + id_digits + 1U) return false;
-    if (!number(line + 1, id_digits, &read.id) || !number(line + 1 + id_digits, 1, &dlc)) return false;
-    if (read.id > (read.extended ? 0x1FFFFFFFU : 0x7FFU) || (!read.fd && dlc > 8U)) return false;
-    read.length = length_of(dlc);
+    if (!number(line + 1, id_digits, &result.id) || !number(line + 1 + id_digits, 1, &dlc)) return false;
+    if (result.id > (result.extended ? 0x1FFFFFFFU : 0x7FFU) || (!result.fd && dlc > 8U)) return false;
+    result.length = length_of(dlc);
     const size_t header = 1U + id_digits + 1U;
-    if (length != header + (read.remote ? 0U : 2U * (size_t)read.length)) return false;
-    for (size_t k = 0; !read.remote && k < read.length; k++) {
+    if (length != header + (result.remote ? 0U : 2U * (size_t)result.length)) return false;
+    for (size_t k = 0; !result.remote && k < result.length; k++) {
         if (!number(line + header + 2U * k, 2, &byte)) return false;
-        read.data[k] = (uint8_t)byte;
+        result.data[k] = (uint8_t)byte;
     }
-    *frame = read;
+    *frame = result;
     return true;
 }
 

@@ -13,8 +13,8 @@ laconic_fmu(LaconicArticulated
     FOLDER articulated
     ICONS vehicle
     SHARED vehicle/core_words.c vehicle/core_words.h vehicle/serialize_core.h
-    SOURCES model.c state.c idle.c exchange.c loads.c serialize.c
-    HEADERS model.h variable_locations.h parts.h
+    SOURCES model.c state.c idle.c loads.c serialize.c
+    HEADERS model.h variable_locations.h parts.h hinged_run.h
     CORE ${core_files} ${articulated_files}
     CORE_OBJECTS laconic_fmu_articulated)
 
@@ -31,7 +31,7 @@ laconic_fmu(LaconicSlipping SLIPPING
     FIELDS "${PROJECT_SOURCE_DIR}/core_c/include/laconic/articulated_friction.h"
     FOLDER slipping
     ICONS "articulated;vehicle"
-    SHARED articulated/variable_locations.h vehicle/core_words.c vehicle/core_words.h vehicle/serialize_core.h
+    SHARED articulated/variable_locations.h articulated/hinged_run.h vehicle/core_words.c vehicle/core_words.h vehicle/serialize_core.h
     SOURCES model.c
     HEADERS model.h
     CORE ${core_files} ${articulated_files} ${slipping_files}

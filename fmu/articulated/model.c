@@ -1,21 +1,8 @@
 /* The vehicle with hinges as an FMU model: starts, changes and steps the core's articulated vehicle. */
 #include <string.h>
 
-#include "core_words.h"
+#include "hinged_run.h"
 #include "parts.h"
-
-/* Internal steps between two looks at whether the importer cancels them: well below a second. */
-#define SLICE_STEPS 256U
-
-/* These do not compile unless the core computes in double and kinds can be read as an int32_t. */
-typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
-typedef char fmu_kinds_are_int32
-    [sizeof(laconic_hinge_kind) == sizeof(int32_t) && sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
-
-static laconic_refusal no_refusal(void) {
-    const laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    return why;
-}
 
 void fmu_model_made(fmu_model *model) { (void)model; /* all vehicles have the same states */ }
 
@@ -33,7 +20,7 @@ static void mark_as_started(fmu_model *self) {
     self->in_use = self->vehicle;
     self->commanded = self->input;
     self->start_needed = self->change_needed = self->jump_needed = false;
-    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    self->stale = FMU_GROUPS_OF_STATE;
 }
 
 fmu_status fmu_model_start(fmu_instance *instance) {
@@ -109,7 +96,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     if (status == LACONIC_OK && self->jump_needed) status = jump(self, &why);
     if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "the change is refused");
     self->change_needed = self->jump_needed = false;
-    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    self->stale = FMU_GROUPS_OF_STATE;
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUP_PLACE);
     if (!changes) return FMU_OK;
     return fmu_log(instance, FMU_OK, FMU_LOG_EVENTS,
@@ -155,17 +142,6 @@ static void show_nothing(fmu_instance *instance, const laconic_refusal *why, uin
     if (groups & FMU_GROUP_RATES) fill(&self->rate, sizeof self->rate, nan);
     if (groups & FMU_GROUP_GROUND) fill(&self->ground, sizeof self->ground, nan);
     if (groups & FMU_GROUP_STATE) fill(&self->motion, sizeof self->motion, nan);
-}
-
-/* What follows from `motion`. */
-static void refresh_origin(fmu_model *self) {
-    const laconic_articulated_model *m = &self->prepared;
-    const laconic_articulated_motion *motion = &self->motion;
-    double from_origin[2];
-    fmu_turn(from_origin, &self->state.heading, m->com_x_m, m->com_y_m);
-    self->origin_m[0] = motion->x_m - from_origin[0];
-    self->origin_m[1] = motion->y_m - from_origin[1];
-    self->heading_wrapped_rad = laconic_angle_wrapped(motion->heading_rad);
 }
 
 static laconic_status refresh_ground(fmu_model *self, laconic_refusal *why) {
@@ -216,7 +192,7 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     if (groups & (FMU_GROUP_PLACE | FMU_GROUP_MOTION | FMU_GROUP_RATES))
         laconic_articulated_motion_of(&self->motion, &self->prepared, &self->state);
     if (groups & FMU_GROUP_PLACE) fmu_articulated_show_state(self);
-    if (groups & FMU_GROUP_MOTION) refresh_origin(self);
+    if (groups & FMU_GROUP_MOTION) show_origin(self, &self->motion);
     if (status == LACONIC_OK && groups & FMU_GROUP_GROUND) status = refresh_ground(self, &why);
     if (status == LACONIC_OK && groups & FMU_GROUP_RATES) status = refresh_rates(self, &why);
     if (status != LACONIC_OK) show_nothing(instance, &why, groups);
@@ -237,25 +213,14 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
-static bool any_is_not_0(const double *numbers, size_t count) {
-    bool found = false;
-    for (size_t k = 0; k < count; k++) found = found || numbers[k] != 0.0;
-    return found;
-}
-
-static bool input_moves(const fmu_model *self) {
+static bool input_has_rates(const fmu_model *self) {
     const laconic_articulated_input *u = &self->input;
-    return any_is_not_0(u->hinge_acceleration_rad_per_s2, LACONIC_MAX_BODIES) || any_is_not_0(u->twist_rate, 3) ||
-           any_is_not_0((const double *)&self->slope, sizeof self->slope / sizeof(double));
+    return any_is_not_0(u->hinge_acceleration_rad_per_s2, LACONIC_MAX_BODIES) || any_is_not_0(u->twist_rate, 3);
 }
 
-typedef char fmu_input_is_all_doubles[sizeof(laconic_articulated_input) % sizeof(double) == 0 ? 1 : -1];
-
-/* The input `by_s` later: FMI 2's slopes, and the derivatives of rates and twist. */
+/* The input `by_s` later: by its slopes, and the derivatives of rates and twist. */
 static void shift_input(laconic_articulated_input *out, const fmu_model *self, double by_s) {
-    const double *u = (const double *)&self->input, *du = (const double *)&self->slope;
-    double *shifted = (double *)out;
-    for (size_t k = 0; k < sizeof *out / sizeof(double); k++) shifted[k] = u[k] + by_s * du[k];
+    shift_by_slope(out, self, by_s);
     for (int b = 0; b < LACONIC_MAX_BODIES; b++) {
         out->hinge_rate_rad_per_s[b] += by_s * self->input.hinge_acceleration_rad_per_s2[b];
         out->hinge_acceleration_rad_per_s2[b] += self->slope.hinge_rate_rad_per_s[b];
@@ -271,69 +236,31 @@ static laconic_status step(fmu_model *self, const laconic_articulated_input *fro
     return laconic_articulated_step(&self->prepared, &self->integrator, &self->state, from, to, why);
 }
 
-/* `slope` holds for one communication step; the derivatives of rates and twist stay as they were set. */
-static void end_at(fmu_model *self, const laconic_articulated_input *reached) {
+static laconic_status step_held(fmu_model *self, laconic_refusal *why) {
+    return step(self, &self->input, &self->input, why);
+}
+
+static laconic_status step_moving(fmu_model *self, uint64_t before, laconic_refusal *why) {
+    const double h = self->integrator.step_s;
+    laconic_articulated_input from, to;
+    shift_input(&from, self, (double)before * h);
+    shift_input(&to, self, (double)(before + 1) * h);
+    return step(self, &from, &to, why);
+}
+
+/* The derivatives of rates and twist stay as they were set. */
+static void end_after(fmu_model *self, uint64_t steps) {
     const laconic_articulated_input none = {0}, before = self->input;
-    self->input = *reached;
+    laconic_articulated_input reached;
+    shift_input(&reached, self, (double)steps * self->integrator.step_s);
+    self->input = reached;
     for (int b = 0; b < LACONIC_MAX_BODIES; b++)
         self->input.hinge_acceleration_rad_per_s2[b] = before.hinge_acceleration_rad_per_s2[b];
     for (int k = 0; k < 3; k++) self->input.twist_rate[k] = before.twist_rate[k];
     self->slope = none;
 }
 
-static laconic_status run_moving(fmu_instance *instance, uint64_t steps, uint64_t *taken, laconic_refusal *why) {
-    fmu_model *self = &instance->model;
-    const double h = self->integrator.step_s;
-    laconic_articulated_input from, to;
-    shift_input(&from, self, 0.0);
-    for (*taken = 0; *taken < steps && !instance->cancelled; ++*taken) {
-        shift_input(&to, self, (double)(*taken + 1) * h);
-        const laconic_status status = step(self, &from, &to, why);
-        if (status != LACONIC_OK) return status;
-        from = to;
-    }
-    end_at(self, &from);
-    return LACONIC_OK;
-}
-
-static laconic_status run_held(fmu_instance *instance, uint64_t steps, uint64_t *taken, laconic_refusal *why) {
-    fmu_model *self = &instance->model;
-    laconic_status status = LACONIC_OK;
-    *taken = 0;
-    while (*taken < steps && (*taken % SLICE_STEPS != 0 || !instance->cancelled)) {
-        status = step(self, &self->input, &self->input, why);
-        if (status != LACONIC_OK) break;
-        ++*taken;
-    }
-    return status;
-}
-
-fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
-    fmu_model *self = &instance->model;
-    laconic_refusal why = no_refusal();
-    const laconic_status status =
-        input_moves(self) ? run_moving(instance, steps, taken, &why) : run_held(instance, steps, taken, &why);
+static void mark_as_run(fmu_model *self) {
     self->commanded = self->input;
-    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
-    return status == LACONIC_OK ? FMU_OK : fmu_discard_with(instance, &why);
-}
-
-void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
-    (void)instance;
-    (void)accepted; /* steps of such a vehicle have no warnings */
-}
-
-void fmu_model_completed_step(fmu_instance *instance) { (void)instance; }
-
-void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
-    motion->state = model->state;
-    motion->input = model->input;
-    motion->slope = model->slope;
-}
-
-void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
-    model->state = motion->state;
-    model->input = motion->input;
-    model->slope = motion->slope;
-    model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    self->stale = FMU_GROUPS_OF_STATE;
 }

@@ -15,6 +15,7 @@
 #define FMU_MODEL_MOST_STATES (6 + 2 * LACONIC_MAX_BODIES + LACONIC_MAX_WHEELS)
 #define FMU_MODEL_PORTS 0 /* bus terminals */
 #define FMU_MODEL_TAKES_SLOPES true
+#define FMU_MODEL_SLICE_STEPS 256U /* between two looks at whether the importer cancels: well below a second */
 #define FMU_MODEL_HAS_OPTIONAL_STATES(model) ((void)(model), false)
 
 /* Arrays have one element for each wheel, or one for each body on a hinge. */
@@ -28,6 +29,7 @@
 #define FMU_GROUP_GROUND 8U
 #define FMU_GROUP_RATES 16U
 #define FMU_GROUPS_ALL 31U
+#define FMU_GROUPS_OF_STATE (FMU_GROUPS_ALL & ~FMU_GROUP_STATE) /* stale when the core's state changed */
 #define FMU_GROUPS_OF_INPUT (FMU_GROUP_GROUND | FMU_GROUP_RATES)
 
 /* The continuous states, or their derivatives. */
@@ -38,6 +40,8 @@ typedef struct fmu_moving {
     double zeta[3];                 /* η of the carriage                                    */
     double own[LACONIC_MAX_BODIES]; /* η of each own hinge; 0 of the others                 */
 } fmu_moving;
+
+typedef laconic_articulated_input fmu_hinged_input;
 
 typedef struct fmu_model {
     bool start_needed;   /* parameters were set since the last start          */

@@ -9,7 +9,11 @@ foreach(name network_port.h ls_bus.h)
 endforeach()
 set(firmware "${PROJECT_SOURCE_DIR}/firmware_stub")
 list(APPEND network_files "laconic_node/frame.h=${firmware}/include/laconic_node/frame.h")
-set(manifest "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml=${CMAKE_CURRENT_SOURCE_DIR}/network")
+foreach(is_bus true false)
+    set(manifest "${CMAKE_CURRENT_BINARY_DIR}/network/is_bus_${is_bus}.xml")
+    configure_file(network/fmi-ls-manifest.xml "${manifest}" @ONLY)
+    set(manifest_${is_bus} "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml=${manifest}")
+endforeach()
 
 # The node's sources, as a board compiles them, with the core's scalar type; the wire contract is generated.
 file(GLOB node_files CONFIGURE_DEPENDS RELATIVE "${firmware}" "${firmware}/node/*.[ch]" "${firmware}/wire/*.[ch]"
@@ -45,6 +49,7 @@ endforeach()
 laconic_fmu(LaconicNode
     DESCRIPTION "${CMAKE_CURRENT_SOURCE_DIR}/network/node/modelDescription.xml"
     FOLDER network/node
+    ICONS network
     SOURCES model.c
     HEADERS model.h variable_locations.h
     CORE ${core_files}
@@ -53,7 +58,7 @@ laconic_fmu(LaconicNode
     FILES ${network_files} "can_controller.h=${CMAKE_CURRENT_SOURCE_DIR}/network/can_controller.h" ${node_named}
     OBJECTS laconic_fmu_node laconic_fmu_wire
     INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include" "${firmware}/node" "${firmware}/drives" "${wire}"
-    PARTS "${manifest}/node/parts/fmi-ls-manifest.xml"
+    PARTS "${manifest_false}"
     DEPENDS laconic_wire_files)
 
 laconic_fmu(LaconicCanBus
@@ -65,15 +70,16 @@ laconic_fmu(LaconicCanBus
     GLUE ${network_glue}
     FILES ${network_files}
     INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include"
-    PARTS "${manifest}/bus/parts/fmi-ls-manifest.xml")
+    PARTS "${manifest_true}")
 
 laconic_fmu(LaconicCanController
     DESCRIPTION "${CMAKE_CURRENT_SOURCE_DIR}/network/robomaster/modelDescription.xml"
     FOLDER network/robomaster
+    ICONS network
     SOURCES model.c
     HEADERS model.h variable_locations.h
     VERSIONS 3
     GLUE ${network_glue} network/can_controller.c
     FILES ${network_files} "can_controller.h=${CMAKE_CURRENT_SOURCE_DIR}/network/can_controller.h"
     INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include"
-    PARTS "${manifest}/robomaster/parts/fmi-ls-manifest.xml")
+    PARTS "${manifest_false}")

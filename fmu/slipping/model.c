@@ -1,22 +1,6 @@
 /* The vehicle with hinges on ground with friction as an FMU model: starts, changes, steps and stores the core's. */
-#include <string.h>
-
-#include "core_words.h"
+#include "hinged_run.h"
 #include "serialize_core.h"
-
-/* Internal steps between two looks at whether the importer cancels them: well below a second. */
-#define SLICE_STEPS 64U
-
-/* These do not compile unless the core computes in double, kinds can be read as an int32_t and inputs are numbers. */
-typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
-typedef char fmu_kinds_are_int32
-    [sizeof(laconic_hinge_kind) == sizeof(int32_t) && sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
-typedef char fmu_input_is_all_doubles[sizeof(laconic_tree_input) % sizeof(double) == 0 ? 1 : -1];
-
-static laconic_refusal no_refusal(void) {
-    const laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    return why;
-}
 
 void fmu_model_made(fmu_model *model) { (void)model; }
 
@@ -106,21 +90,12 @@ fmu_status fmu_model_change(fmu_instance *instance) {
 
 /* ------------------------------------------------------------------------------------- outputs -- */
 
-static void show_origin(fmu_model *self) {
-    const laconic_articulated_motion *motion = &self->out.motion;
-    double from_origin[2];
-    fmu_turn(from_origin, &self->state.heading, self->prepared.com_x_m, self->prepared.com_y_m);
-    self->origin_m[0] = motion->x_m - from_origin[0];
-    self->origin_m[1] = motion->y_m - from_origin[1];
-    self->heading_wrapped_rad = laconic_angle_wrapped(motion->heading_rad);
-}
-
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     fmu_model *self = &instance->model;
     const laconic_tree_model *m = &self->prepared;
     if ((groups & self->stale) == 0) return;
     laconic_tree_outputs_of(&self->out, m, &self->state);
-    show_origin(self);
+    show_origin(self, &self->out.motion);
     self->solver_passes = self->state.passes;
     for (int32_t i = 0; i < m->wheel_count; i++) {
         self->contact_state[i] = self->out.contact_state[i];
@@ -144,78 +119,33 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
-/* The input `by_s` later, by the slopes of FMI 2. */
-static void shift_input(laconic_tree_input *out, const fmu_model *self, double by_s) {
-    const double *u = (const double *)&self->input, *du = (const double *)&self->slope;
-    double *shifted = (double *)out;
-    for (size_t k = 0; k < sizeof *out / sizeof(double); k++) shifted[k] = u[k] + by_s * du[k];
-}
-
-static bool input_moves(const fmu_model *self) {
-    const double *du = (const double *)&self->slope;
-    bool moves = false;
-    for (size_t k = 0; k < sizeof self->slope / sizeof(double); k++) moves = moves || du[k] != 0.0;
-    return moves;
+static bool input_has_rates(const fmu_model *self) {
+    (void)self;
+    return false;
 }
 
 static laconic_status step(fmu_model *self, const laconic_tree_input *held, laconic_refusal *why) {
     return laconic_tree_step(&self->prepared, self->internal_step_s, &self->state, held, why);
 }
 
-/* Each step has the input of its middle. Slopes hold for one communication step. */
-static laconic_status run_moving(fmu_instance *instance, uint64_t steps, uint64_t *taken, laconic_refusal *why) {
-    fmu_model *self = &instance->model;
-    const double h = self->internal_step_s;
-    const laconic_tree_input none = {0};
+static laconic_status step_held(fmu_model *self, laconic_refusal *why) { return step(self, &self->input, why); }
+
+/* Each step has the input of its middle. */
+static laconic_status step_moving(fmu_model *self, uint64_t before, laconic_refusal *why) {
     laconic_tree_input held;
-    for (*taken = 0; *taken < steps && !instance->cancelled; ++*taken) {
-        shift_input(&held, self, ((double)*taken + 0.5) * h);
-        const laconic_status status = step(self, &held, why);
-        if (status != LACONIC_OK) return status;
-    }
-    shift_input(&held, self, (double)steps * h);
-    self->input = held;
+    shift_by_slope(&held, self, ((double)before + 0.5) * self->internal_step_s);
+    return step(self, &held, why);
+}
+
+static void end_after(fmu_model *self, uint64_t steps) {
+    const laconic_tree_input none = {0};
+    laconic_tree_input reached;
+    shift_by_slope(&reached, self, (double)steps * self->internal_step_s);
+    self->input = reached;
     self->slope = none;
-    return LACONIC_OK;
 }
 
-static laconic_status run_held(fmu_instance *instance, uint64_t steps, uint64_t *taken, laconic_refusal *why) {
-    fmu_model *self = &instance->model;
-    for (*taken = 0; *taken < steps && (*taken % SLICE_STEPS != 0 || !instance->cancelled); ++*taken) {
-        const laconic_status status = step(self, &self->input, why);
-        if (status != LACONIC_OK) return status;
-    }
-    return LACONIC_OK;
-}
-
-fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
-    fmu_model *self = &instance->model;
-    laconic_refusal why = no_refusal();
-    const laconic_status status =
-        input_moves(self) ? run_moving(instance, steps, taken, &why) : run_held(instance, steps, taken, &why);
-    self->stale = FMU_GROUPS_ALL;
-    return status == LACONIC_OK ? FMU_OK : fmu_discard_with(instance, &why);
-}
-
-void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
-    (void)instance;
-    (void)accepted; /* steps of such a vehicle have no warnings */
-}
-
-void fmu_model_completed_step(fmu_instance *instance) { (void)instance; }
-
-void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
-    motion->state = model->state;
-    motion->input = model->input;
-    motion->slope = model->slope;
-}
-
-void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
-    model->state = motion->state;
-    model->input = motion->input;
-    model->slope = motion->slope;
-    model->stale = FMU_GROUPS_ALL;
-}
+static void mark_as_run(fmu_model *self) { self->stale = FMU_GROUPS_OF_STATE; }
 
 /* ------------------------------------------------------------- no Model Exchange, no derivatives -- */
 

@@ -16,6 +16,7 @@
 #define FMU_MODEL_MOST_STATES 1
 #define FMU_MODEL_PORTS 0 /* bus terminals */
 #define FMU_MODEL_TAKES_SLOPES true
+#define FMU_MODEL_SLICE_STEPS 64U /* between two looks at whether the importer cancels: well below a second */
 #define FMU_MODEL_HAS_OPTIONAL_STATES(model) ((void)(model), false)
 
 /* Arrays have one element for each wheel, or one for each body on a hinge. */
@@ -25,6 +26,9 @@
 /* All outputs are computed together: they follow from the state alone, which has what its last step found. */
 #define FMU_GROUP_OUTPUTS 1U
 #define FMU_GROUPS_ALL 1U
+#define FMU_GROUPS_OF_STATE FMU_GROUPS_ALL /* stale when the core's state changed */
+
+typedef laconic_tree_input fmu_hinged_input;
 
 typedef struct fmu_model {
     bool start_needed;   /* parameters were set since the last start                     */

@@ -1,5 +1,5 @@
 /* The core's error estimate beside the plant: it watches internal steps, and shows how far they are from the truth. */
-#include "estimate_part.h"
+#include "parts.h"
 
 bool fmu_estimate_is_on(const fmu_model *model) { return model->estimate_error; }
 

@@ -1,6 +1,6 @@
 /* Vehicles with ground friction or limits of their drive: in Co-Simulation the plant has what the last step found; in
  * Model Exchange the smooth law gives it for this instant, or on ideal ground the model of the wheels that roll. */
-#include "friction_part.h"
+#include "parts.h"
 
 bool fmu_vehicle_slips(const laconic_vehicle *vehicle) {
     return vehicle->ground.friction_coefficient > 0.0 && vehicle->wheel_count > 0;

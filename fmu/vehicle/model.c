@@ -1,11 +1,7 @@
 /* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. */
 #include "core_words.h"
-#include "estimate_part.h"
-#include "friction_part.h"
-#include "grip_warning.h"
-#include "idle_motors.h"
 #include "model_interface.h"
-#include "sensors_part.h"
+#include "parts.h"
 
 /* Internal steps between two looks at whether the importer cancels them: well below a second. */
 #define SLICE_STEPS 1024U

@@ -1,5 +1,5 @@
 /* The core's sensors beside the plant: they watch its internal steps, and show what they have seen. */
-#include "sensors_part.h"
+#include "parts.h"
 
 bool fmu_sensors_are_there(const fmu_model *model) {
     bool there = model->has_imu;

@@ -1,8 +1,6 @@
 /* All members of the vehicle's fmu_model to and from bytes. Prepared constants are not stored but prepared again, which
  * gives the same bits. */
-#include "friction_part.h"
-#include "idle_motors.h"
-#include "sensors_part.h"
+#include "parts.h"
 #include "serialize_core.h"
 
 static void serialize_vehicle(fmu_stream *s, laconic_vehicle *v) {

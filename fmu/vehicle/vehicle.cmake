@@ -1,7 +1,7 @@
 # The vehicle as FMU, and again with derivatives of its steps, and with an error estimate.
 
-set(vehicle_sources model.c core_words.c friction_part.c grip_warning.c idle_motors.c sensors_part.c tangent.c serialize.c)
-set(vehicle_headers variable_locations.h core_words.h estimate_part.h friction_part.h grip_warning.h idle_motors.h sensors_part.h serialize_core.h)
+set(vehicle_sources model.c core_words.c friction_part.c warnings.c sensors_part.c tangent.c serialize.c)
+set(vehicle_headers variable_locations.h core_words.h parts.h serialize_core.h)
 set(vehicle_description "${PROJECT_SOURCE_DIR}/modelDescription.xml")
 
 laconic_fmu(Laconic

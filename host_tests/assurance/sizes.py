@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 APPARATUS = ("host_tests/assurance/", "host_tests/tests/assurance/", ".ci/", ".clang", "ruff.toml", "mypy.ini",
-             "cmake/check_purity.py", "cmake/LaconicPurity.cmake", "cmake/LaconicFormat.cmake")
+             "cmake/check_purity.py", "cmake/LaconicChecks.cmake")
 TESTS = ("host_tests/",)                          # behaviour of everything together, and its references
 OF_TESTS = {"tests", "test"}                      # folders next to what they test
 TEXT = (".c", ".h", ".cu", ".py", ".pyi", ".js", ".mjs", ".ts", ".html", ".css", ".cmake", ".txt", ".toml", ".xml",

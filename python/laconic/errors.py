@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Iterable
@@ -106,8 +105,10 @@ def words_of(error: BaseException, otherwise: str) -> str:
 
 def nearest_of(word: str, known: Iterable[str], instead: str | None = None) -> str:
     """The remedy for a word that is not known: "did you mean …?", what to do instead, or the list of known ones."""
+    from difflib import get_close_matches  # not in the start of every command
+
     names, word = sorted(known), word[:LONGEST_NAME]
-    close = difflib.get_close_matches(word, names, n=1, cutoff=0.8 if instead else 0.6)
+    close = get_close_matches(word, names, n=1, cutoff=0.8 if instead else 0.6)
     return f"did you mean {close[0]}?" if close else instead or f"known are {', '.join(names)}"
 
 

@@ -9,13 +9,10 @@ from pathlib import Path
 from . import archive, fmi2, fmi3
 from .archive import pack
 from .description import identifier_in, parse, token_in, token_of, with_identifier, with_token
-from .estimate import with_estimate, without_estimate
-from .field_list import missing_variable
-from .for_vehicle import for_vehicle
+from .field_list import differing_item, methods_in, missing_variable, with_items
+from .for_vehicle import for_vehicle, of_step, with_estimate, without_estimate
 from .licences import licence_parts, ziglang_in
-from .method_list import differing_item, methods_in, with_items
 from .names import with_own_names
-from .of_step import of_step
 from .slipping import of_slipping, without_slip
 from .tables import tables
 

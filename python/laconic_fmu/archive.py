@@ -16,8 +16,7 @@ from pathlib import Path
 
 from . import fmi2, fmi3
 from .description import Description, identifier_in, parse, start_values, token_in, with_identifier, with_values
-from .for_vehicle import for_vehicle
-from .of_step import of_step
+from .for_vehicle import for_vehicle, of_step
 from .scalars import elements_of, without_enumerations
 from .slipping import of_slipping
 

@@ -1,7 +1,7 @@
 /* Counts the instructions of a step on the board: BENCH_STEPS of them, then twice as many, each in one window of
  * the 24-bit counter; and the stack that a step takes. */
+#include "bench.h"
 #include "bench_board.h"
-#include "write_state.h"
 
 #ifndef BENCH_STEPS
 #error "bench: BENCH_STEPS, the steps to count, must be given"

@@ -1,6 +1,6 @@
 /* Counts the instructions of each of BENCH_STEPS steps by itself: those of a friction step differ from step to step. */
+#include "bench.h"
 #include "bench_board.h"
-#include "write_state.h"
 
 #ifndef BENCH_STEPS
 #error "bench: BENCH_STEPS, the steps to count, must be given"

@@ -244,8 +244,9 @@ laconic_status laconic_tree_state_set(laconic_tree_state *state, const laconic_t
 
 /* ---------------------------------------------------------------------------------- steps -- */
 
-/* One step under the held input. A step that its solver refuses is taken in 2, 4 or 8 parts first. Refuses, with the
- * state as it was:
+/* One step under the held input. Nothing corresponds to laconic_step_sampled(). At first order an input from the middle
+ * of the step is as accurate. A step that its solver refuses is taken in 2, 4 or 8 parts first. Refuses, with the state
+ * as it was:
  *   NOT_FINITE, NOT_POSITIVE  a number of the input, or the step
  *   STEP_DOES_NOT_FIT         a control_period_s is not a whole number of steps
  *   STEP_UNSOLVED             no contact forces found

@@ -11,7 +11,7 @@
  *
  * What M makes of a step's own error within that step is in it already, since it was measured. So from ē is taken what
  * the source makes within each step, h² φ2 s of one: on an axis whose damping is fast that is nearly all of ē. */
-#include "linear_motion.h"
+#include "estimate_parts.h"
 
 /* e^−a, T φ1, T² φ2 of each axis over some time T. */
 typedef struct decay_factors {

@@ -78,17 +78,17 @@ void canopen_set_nmt(const canopen_node *on, uint8_t nmt) {
 }
 
 static void command(const canopen_node *on, uint8_t code) {
-    const bool moves = on->axis->state == CANOPEN_ENABLED || on->axis->state == CANOPEN_QUICK_STOP;
+    const bool is_moving = on->axis->state == CANOPEN_ENABLED || on->axis->state == CANOPEN_QUICK_STOP;
     switch (code) {
     case NMT_START: canopen_set_nmt(on, CANOPEN_OPERATIONAL); break;
     case NMT_STOP:
-        if (moves) canopen_connection_option(on, 0x8100);
+        if (is_moving) canopen_connection_option(on, 0x8100);
         canopen_set_nmt(on, CANOPEN_STOPPED);
         break;
     case NMT_PRE_OPERATIONAL: canopen_set_nmt(on, CANOPEN_PRE_OPERATIONAL); break;
     case NMT_RESET_NODE: reset_node(on); break;
     case NMT_RESET_COMMUNICATION:
-        if (moves) canopen_connection_option(on, 0x8100);
+        if (is_moving) canopen_connection_option(on, 0x8100);
         reset_communication(on);
         break;
     default: break;
@@ -127,18 +127,18 @@ static void check_heartbeats(const canopen_node *on) {
 static bool take_frame(const canopen_node *on, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
     const bool operational = axis->nmt == CANOPEN_OPERATIONAL;
-    bool taken = !frame->remote && take_heartbeat(on, frame->id);
-    if (axis->nmt == CANOPEN_STOPPED) return taken;
+    bool is_taken = !frame->remote && take_heartbeat(on, frame->id);
+    if (axis->nmt == CANOPEN_STOPPED) return is_taken;
     if (!frame->remote && frame->id == 0x600U + canopen_id(on) && frame->length == 8) {
         canopen_sdo(on, frame->data);
         return true;
     }
-    if (!operational) return taken;
+    if (!operational) return is_taken;
     if (!frame->remote && frame->id == axis->sync_id) {
         canopen_sync(on);
-        taken = true;
+        is_taken = true;
     }
-    return canopen_take_pdo(on, frame) || taken;
+    return canopen_take_pdo(on, frame) || is_taken;
 }
 
 static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us) {

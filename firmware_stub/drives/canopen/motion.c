@@ -105,12 +105,12 @@ void canopen_new_set_point(const canopen_node *on, uint16_t before) {
     const uint16_t word = axis->controlword;
     if ((word & CANOPEN_NEW_SET_POINT) == 0) axis->set_point &= (uint8_t)~CANOPEN_SET_POINT_HELD;
     if (axis->mode_display != CANOPEN_PROFILE_POSITION || (word & ~before & CANOPEN_NEW_SET_POINT) == 0) return;
-    const bool moves = (axis->set_point & CANOPEN_SET_POINT_MOVES) != 0;
+    const bool is_moving = (axis->set_point & CANOPEN_SET_POINT_MOVES) != 0;
     if ((axis->set_point & CANOPEN_SET_POINT_WAITS) != 0 && (word & CANOPEN_AT_ONCE) == 0) return; /* no room */
     const uint32_t origin = (word & CANOPEN_RELATIVE) != 0 ? (uint32_t)axis->goal : 0U;
     const int32_t goal = (int32_t)(origin + (uint32_t)axis->target_position);
     axis->set_point |= CANOPEN_SET_POINT_HELD;
-    if (moves && (word & CANOPEN_AT_ONCE) == 0) {
+    if (is_moving && (word & CANOPEN_AT_ONCE) == 0) {
         axis->next_goal = goal;
         axis->set_point |= CANOPEN_SET_POINT_WAITS;
     } else {
@@ -256,18 +256,18 @@ static bool stands(const canopen_node *on) {
 void canopen_move(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     if (axis->state < CANOPEN_ENABLED || axis->state == CANOPEN_FAULT) return;
-    const bool ends = axis->ending != CANOPEN_NO_ENDING;
-    if (!ends && !halts(axis)) {
+    const bool is_ending = axis->ending != CANOPEN_NO_ENDING;
+    if (!is_ending && !halts(axis)) {
         watch_following(on);
         if (axis->state == CANOPEN_ENABLED) run_mode(on);
         return;
     }
-    slow_down(on, ends ? axis->ramp : axis->halt_option);
+    slow_down(on, is_ending ? axis->ramp : axis->halt_option);
     set_target(on, LACONIC_DRIVE_SPEED, axis->speed, 0);
     axis->demand = on->drive->encoder.count;
     axis->demand_rest = on->drive->encoder.rest;
     axis->left_s = 0;
-    if (ends && stands(on) && axis->ending != axis->state) canopen_go(on, axis->ending);
+    if (is_ending && stands(on) && axis->ending != axis->state) canopen_go(on, axis->ending);
 }
 
 /* The statusword's bits 10 target reached, 11 internal limit active, 12 and 13 by mode. */

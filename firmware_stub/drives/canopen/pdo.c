@@ -159,13 +159,13 @@ static void apply(const canopen_node *on, const canopen_pdo *pdo) {
 static void take(const canopen_node *on, int k, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
     canopen_pdo *pdo = &axis->pdo[k];
-    const uint8_t length = length_of(pdo), ends = (uint8_t)(CANOPEN_TROUBLE_LENGTH | CANOPEN_TROUBLE_DEADLINE << k);
+    const uint8_t length = length_of(pdo), troubles = (uint8_t)(CANOPEN_TROUBLE_LENGTH | CANOPEN_TROUBLE_DEADLINE << k);
     if (frame->length < length) {
         if ((axis->trouble & CANOPEN_TROUBLE_LENGTH) == 0) canopen_emergency(axis, 0x8210);
         axis->trouble |= CANOPEN_TROUBLE_LENGTH;
         return;
     }
-    axis->trouble &= (uint8_t)~ends;
+    axis->trouble &= (uint8_t)~troubles;
     canopen_all_clear(axis);
     memcpy(pdo->data, frame->data, length);
     pdo->at_us = on->now_us;
@@ -178,17 +178,17 @@ static void take(const canopen_node *on, int k, const laconic_frame *frame) {
 
 bool canopen_take_pdo(const canopen_node *on, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
-    bool taken = false;
+    bool is_taken = false;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        const uint16_t awaited = axis->pdo[k].cob_id & (CANOPEN_OFF | 0x7FF); /* bit 30 means nothing here */
-        if (!frame->remote && awaited == frame->id) {
+        const uint16_t received_id = axis->pdo[k].cob_id & (CANOPEN_OFF | 0x7FF); /* bit 30 means nothing here */
+        if (!frame->remote && received_id == frame->id) {
             take(on, k, frame);
-            taken = true;
+            is_taken = true;
         }
-        const uint16_t asked = axis->pdo[CANOPEN_PDOS + k].cob_id; /* equal only where remote requests are allowed */
-        if (frame->remote && asked == frame->id) axis->due |= (uint8_t)(CANOPEN_DUE_TPDO << k);
+        const uint16_t sent_id = axis->pdo[CANOPEN_PDOS + k].cob_id; /* equal only where remote requests are allowed */
+        if (frame->remote && sent_id == frame->id) axis->due |= (uint8_t)(CANOPEN_DUE_TPDO << k);
     }
-    return taken;
+    return is_taken;
 }
 
 void canopen_check_deadlines(const canopen_node *on) {
@@ -239,9 +239,9 @@ void canopen_sync(const canopen_node *on) {
     for (int k = 0; k < CANOPEN_PDOS; k++) {
         const canopen_pdo *pdo = &axis->pdo[CANOPEN_PDOS + k];
         if (!is_on(pdo) || pdo->type > SYNCHRONOUS_LAST) continue;
-        const bool due = pdo->type == 0 ? has_changed(on, pdo) : ++axis->syncs[k] >= pdo->type;
-        if (due) set_due(on, k);
-        if (due) axis->syncs[k] = 0;
+        const bool is_due = pdo->type == 0 ? has_changed(on, pdo) : ++axis->syncs[k] >= pdo->type;
+        if (is_due) set_due(on, k);
+        if (is_due) axis->syncs[k] = 0;
     }
 }
 

@@ -27,8 +27,8 @@ static uint32_t upload(const canopen_node *on, const canopen_row *row) {
     return 0;
 }
 
-static uint32_t check_size(uint32_t given, uint8_t size) {
-    return given > size ? CANOPEN_TOO_LONG : given < size ? CANOPEN_TOO_SHORT : 0;
+static uint32_t check_size(uint32_t length, uint8_t size) {
+    return length > size ? CANOPEN_TOO_LONG : length < size ? CANOPEN_TOO_SHORT : 0;
 }
 
 static uint32_t write(const canopen_node *on, const canopen_row *row, const uint8_t *bytes) {

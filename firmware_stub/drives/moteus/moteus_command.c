@@ -42,8 +42,8 @@ static void bound_all(moteus_command *command) {
 }
 
 /* A limit that is not set is the default; a negative one is none. */
-static laconic_real limit(laconic_real given, laconic_real by_default) {
-    return given != given ? by_default : given < 0 ? real_not_a_number() : given;
+static laconic_real limit(laconic_real value, laconic_real by_default) {
+    return value != value ? by_default : value < 0 ? real_not_a_number() : value;
 }
 
 /* Any limit makes one of the speed. */
@@ -53,10 +53,11 @@ static void complete_limits(moteus_command *command, const laconic_wheel_drive *
     if (!(fastest > 0)) fastest = max_velocity;
     command->velocity_limit = limit(command->velocity_limit, real_not_a_number());
     command->acceleration_limit = limit(command->acceleration_limit, default_acceleration_limit);
-    const bool limited = is_finite(command->velocity_limit) || is_finite(command->acceleration_limit);
-    if (limited && !(command->velocity_limit <= fastest)) command->velocity_limit = fastest;
+    const bool has_limits = is_finite(command->velocity_limit) || is_finite(command->acceleration_limit);
+    if (has_limits && !(command->velocity_limit <= fastest)) command->velocity_limit = fastest;
     if (command->velocity != command->velocity) command->velocity = 0;
-    if (limited) command->velocity = real_within(command->velocity, -command->velocity_limit, command->velocity_limit);
+    if (has_limits)
+        command->velocity = real_within(command->velocity, -command->velocity_limit, command->velocity_limit);
 }
 
 static drive_place place_of(const moteus_axis *axis, const laconic_wheel_drive *drive, laconic_real turns) {

@@ -13,10 +13,10 @@ typedef struct gains {
 
 /* The scene's gains are of a cascade: speed for a place's error, current for a speed's. */
 static gains gains_of(const laconic_wheel_drive *drive, laconic_real kp_scale, laconic_real kd_scale) {
-    const laconic_drive_settings *has = &drive->settings;
+    const laconic_drive_settings *settings = &drive->settings;
     gains of = {0};
-    of.kd = has->speed_gain_As * moteus_torque_constant(drive) * has->gear_ratio * (2 * MOTEUS_PI);
-    of.kp = has->position_gain_per_s * of.kd * kp_scale;
+    of.kd = settings->speed_gain_As * moteus_torque_constant(drive) * settings->gear_ratio * (2 * MOTEUS_PI);
+    of.kp = settings->position_gain_per_s * of.kd * kp_scale;
     of.kd *= kd_scale;
     of.maximum_torque = LACONIC_REAL_MAX;
     return of;
@@ -115,10 +115,10 @@ static void give_torque(moteus_axis *axis, laconic_wheel_drive *drive, const gai
     status->velocity_error = slip;
     status->torque_of_kp = by->kp * off;
     status->torque_of_kd = by->kd * slip;
-    const laconic_real wanted = by->feedforward_torque - by->kp * off - by->kd * slip;
-    laconic_real torque = wanted;
-    if (by->maximum_torque == by->maximum_torque) torque = real_within(wanted, -by->maximum_torque, by->maximum_torque);
-    axis->fault = torque != wanted ? MOTEUS_LIMIT_TORQUE : 0;
+    const laconic_real sum = by->feedforward_torque - by->kp * off - by->kd * slip;
+    laconic_real torque = sum;
+    if (by->maximum_torque == by->maximum_torque) torque = real_within(sum, -by->maximum_torque, by->maximum_torque);
+    axis->fault = torque != sum ? MOTEUS_LIMIT_TORQUE : 0;
     status->command_torque = torque;
     give_current(drive, torque / moteus_torque_constant(drive));
 }
@@ -165,9 +165,9 @@ static void stay_within(moteus_axis *axis, laconic_wheel_drive *drive) {
 
 /* Phases shorted: the back-EMF drives its current through the winding. */
 static void brake(laconic_wheel_drive *drive) {
-    const laconic_drive_settings *has = &drive->settings;
-    const laconic_real back_emf_V = has->torque_constant_Nm_per_A * drive->speed_rad_per_s;
-    give_current(drive, has->winding_resistance_ohm > 0 ? -back_emf_V / has->winding_resistance_ohm : 0);
+    const laconic_drive_settings *settings = &drive->settings;
+    const laconic_real back_emf_V = settings->torque_constant_Nm_per_A * drive->speed_rad_per_s;
+    give_current(drive, settings->winding_resistance_ohm > 0 ? -back_emf_V / settings->winding_resistance_ohm : 0);
 }
 
 static uint8_t fault_of(uint32_t faults) {

@@ -79,13 +79,13 @@ static bool read_registers(laconic_drives *drives, int32_t i, reader *from, uint
     uint32_t count, number, error = 0;
     if (!read_range(from, kind, &count, &number)) return false;
     if (!axis->answers) return true;
-    bool fits = put_varuint(axis, REPLY | (kind & 0xFU)) && ((kind & 3U) != 0 || put_varuint(axis, count)) &&
-                put_varuint(axis, number);
-    for (; fits && count > 0; count--, number++) {
-        fits = put_register(drives, i, number, kind >> 2 & 3U, &error);
+    bool has_room = put_varuint(axis, REPLY | (kind & 0xFU)) && ((kind & 3U) != 0 || put_varuint(axis, count)) &&
+                    put_varuint(axis, number);
+    for (; has_room && count > 0; count--, number++) {
+        has_room = put_register(drives, i, number, kind >> 2 & 3U, &error);
         if (error) break;
     }
-    if (fits) return true;
+    if (has_room) return true;
     axis->reply_length = length;
     if (error) put_error(axis, READ_ERROR, number, error);
     return false;

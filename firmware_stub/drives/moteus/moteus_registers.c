@@ -151,9 +151,9 @@ static void encode(laconic_real value, scale of, uint32_t type, uint8_t *to) {
         octets_put_real(to, value);
         return;
     }
-    const laconic_real scaled = value / worth[of][type], most = (laconic_real)largest[type];
+    const laconic_real count = value / worth[of][type], most = (laconic_real)largest[type];
     int32_t raw = -largest[type] - 1;
-    if (is_finite(value)) raw = scaled >= most ? largest[type] : scaled <= -most ? -largest[type] : (int32_t)scaled;
+    if (is_finite(value)) raw = count >= most ? largest[type] : count <= -most ? -largest[type] : (int32_t)count;
     if (type == MOTEUS_INT32) octets_put_u32(to, (uint32_t)raw);
     if (type == MOTEUS_INT16) octets_put_u16(to, (uint32_t)raw);
     if (type == MOTEUS_INT8) to[0] = (uint8_t)raw;

@@ -79,13 +79,13 @@ static void input_torque(laconic_drives *drives, int32_t i, const laconic_frame 
 static void limits(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
     (void)now_us;
     odrive_axis *axis = odrive_axis_of(drives, i);
-    laconic_drive_settings *has = &drive_of(drives, i)->settings;
+    laconic_drive_settings *settings = &drive_of(drives, i)->settings;
     const laconic_real speed = octets_real(frame->data), current_A = octets_real(frame->data + 4);
     if (!(speed >= 0) || !(current_A >= 0)) return;
     axis->speed_limit = is_finite(speed) ? speed : LACONIC_REAL_MAX;
-    has->speed_limit_rad_per_s = speed < most ? speed * (2 * ODRIVE_PI) : 0;
-    if (speed == 0) has->speed_limit_rad_per_s = LACONIC_REAL_MIN; /* 0 is no limit to the drive */
-    has->current_limit_A = current_A < axis->most_current_A ? current_A : axis->most_current_A;
+    settings->speed_limit_rad_per_s = speed < most ? speed * (2 * ODRIVE_PI) : 0;
+    if (speed == 0) settings->speed_limit_rad_per_s = LACONIC_REAL_MIN; /* 0 is no limit to the drive */
+    settings->current_limit_A = current_A < axis->most_current_A ? current_A : axis->most_current_A;
 }
 
 static void travel_speed(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
@@ -139,12 +139,12 @@ static void position_gain(laconic_drives *drives, int32_t i, const laconic_frame
 /* Torque for an error of 1 turn/s, and for its integral of 1 turn. */
 static void speed_gains(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
     (void)now_us;
-    laconic_drive_settings *has = &drive_of(drives, i)->settings;
+    laconic_drive_settings *settings = &drive_of(drives, i)->settings;
     laconic_real gain, integral;
     if (!read_both(frame, 0, &gain, &integral)) return;
-    const laconic_real torque_per_current = has->torque_constant_Nm_per_A * (2 * ODRIVE_PI);
-    has->speed_gain_As = gain / torque_per_current;
-    has->speed_integral_gain_A = integral / torque_per_current;
+    const laconic_real torque_per_current = settings->torque_constant_Nm_per_A * (2 * ODRIVE_PI);
+    settings->speed_gain_As = gain / torque_per_current;
+    settings->speed_integral_gain_A = integral / torque_per_current;
 }
 
 /* Messages that are not here, RxSdo and Enter_DFU_Mode among them, only feed the watchdog. */

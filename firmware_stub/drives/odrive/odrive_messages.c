@@ -6,8 +6,9 @@ typedef void fill(const laconic_wheel_drive *drive, const odrive_axis *axis, uin
 
 /* Power that the motor takes: what it gives off at the shaft and what its winding turns into heat. */
 static laconic_real electrical_power(const laconic_wheel_drive *drive) {
-    const laconic_drive_settings *has = &drive->settings;
-    return (has->torque_constant_Nm_per_A * drive->speed_rad_per_s + has->winding_resistance_ohm * drive->current_A) *
+    const laconic_drive_settings *settings = &drive->settings;
+    return (settings->torque_constant_Nm_per_A * drive->speed_rad_per_s +
+            settings->winding_resistance_ohm * drive->current_A) *
            drive->current_A;
 }
 

@@ -90,10 +90,10 @@ static uint32_t errors_of(uint32_t faults) {
         ODRIVE_POSITION_LIMIT_VIOLATION, /* following   */
         ODRIVE_BAD_CONFIG,               /* target      */
     };
-    uint32_t found = 0;
+    uint32_t bits = 0;
     for (size_t k = 0; k < sizeof errors / sizeof errors[0]; k++)
-        if (faults >> k & 1U) found |= errors[k];
-    return found;
+        if (faults >> k & 1U) bits |= errors[k];
+    return bits;
 }
 
 static bool is_silent(const laconic_drives *drives, const odrive_axis *axis, uint32_t now_us) {

@@ -1,7 +1,7 @@
 /* The numbers of drives as a client of a node sends them: the one list of these parameters.
  *
  * A new number changes four files, as one of vehicle.h does: here its member and its row; laconic.dbc, its number in
- * the value tables of PARAMETER.field and RESULT.field; packaging/laconic_build/wire/drive_parameters.py, its unit; and
+ * the value tables of PARAMETER.field and RESULT.field; packaging/laconic_build/wire/wire_parameters.py, its unit; and
  * docs/wire.md, made from these. */
 #ifndef LACONIC_DRIVES_SETTINGS_H
 #define LACONIC_DRIVES_SETTINGS_H
@@ -13,6 +13,12 @@
 #endif
 #if LACONIC_NODE_WITH_DRIVES && (!LACONIC_WITH_AXLE_TORQUE || !LACONIC_WITH_WHEEL_ANGLES)
 #error "laconic: drives need LACONIC_WITH_AXLE_TORQUE and LACONIC_WITH_WHEEL_ANGLES, or set LACONIC_NODE_WITH_DRIVES=0"
+#endif
+/* 1: vehicles with hinges also on ground with friction; links the core's articulated_friction. It is nothing in a build
+ * without hinges or without friction. */
+#if !defined LACONIC_NODE_WITH_SLIP || !LACONIC_NODE_WITH_HINGES || !LACONIC_WITH_FRICTION
+#undef LACONIC_NODE_WITH_SLIP
+#define LACONIC_NODE_WITH_SLIP 0
 #endif
 #ifndef LACONIC_NODE_DRIVES_ONLY
 #define LACONIC_NODE_DRIVES_ONLY 0 /* 1 leaves out lockstep, free run and the frames that move the vehicle in them */

@@ -4,8 +4,7 @@
 #include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
 #include "laconic_wire.h"
-#include "methods.h"
-#include "protocols.h"
+#include "linked.h"
 
 #include <string.h>
 

@@ -6,8 +6,7 @@
 #include "laconic_node/node.h"
 #include "laconic_node/slcan.h"
 #include "laconic_wire.h"
-#include "methods.h"
-#include "protocols.h"
+#include "linked.h"
 #include "watch.h"
 
 #define RING_SIZE 256U /* 11 classic frames; a power of two */
@@ -135,9 +134,9 @@ int main(void) {
     board_init();
     begin();
     for (;;) {
-        const bool received = receive_some();
+        const bool is_busy = receive_some();
         port_on_tick(&node, board_now_us());
         const bool sending = send_some();
-        if (!received && !sending && node.pending == 0 && !has_steps()) sleep_until_interrupt();
+        if (!is_busy && !sending && node.pending == 0 && !has_steps()) sleep_until_interrupt();
     }
 }

@@ -162,9 +162,9 @@ static void make_rig(board *port, station *sender) {
 
 /* To the node; with a key only what its holder sends. */
 static void hand_over(board *port, const laconic_frame *frame) {
-    laconic_frame passed = *frame;
-    if (!port->guarded || laconic_gate_take(&port->gate, frame, &passed))
-        laconic_integrity_on_frame(&port->integrity, &port->node, &passed, now_us());
+    laconic_frame copy = *frame;
+    if (!port->guarded || laconic_gate_take(&port->gate, frame, &copy))
+        laconic_integrity_on_frame(&port->integrity, &port->node, &copy, now_us());
 }
 
 /* A frame of one station goes to the node and to all other stations; what a rig tells the node, to rigs only. */

@@ -6,7 +6,7 @@
 uint32_t laconic_library_wheel_drive_size(void) { return (uint32_t)sizeof(laconic_wheel_drive); }
 
 void laconic_library_wheel_drive_start(laconic_wheel_drive *drive, const laconic_library_drive_settings *settings) {
-    const laconic_drive_settings given = {
+    const laconic_drive_settings numbers = {
         .node_id = settings->node_id,
         .encoder_counts = settings->encoder_counts,
         .gear_ratio = (laconic_real)settings->gear_ratio,
@@ -22,7 +22,7 @@ void laconic_library_wheel_drive_start(laconic_wheel_drive *drive, const laconic
         .speed_integral_gain_A = (laconic_real)settings->speed_integral_gain_A,
         .stall_time_s = (laconic_real)settings->stall_time_s,
     };
-    laconic_drive_start(drive, &given);
+    laconic_drive_start(drive, &numbers);
 }
 
 void laconic_library_wheel_drive_aim(laconic_wheel_drive *drive, int32_t mode, int64_t count, double rest,
@@ -65,8 +65,8 @@ double laconic_library_wheel_drive_brake(const laconic_wheel_drive *drive, const
 uint32_t laconic_library_plant_size(void) { return (uint32_t)sizeof(laconic_plant); }
 
 void laconic_library_wheel_drive_measured(const laconic_wheel_drive *drive, laconic_library_measured *measured) {
-    const laconic_library_measured seen = {(int32_t)drive->target.mode, drive->faults,
-                                           drive->encoder.count,        (double)drive->speed_rad_per_s,
-                                           (double)drive->current_A,    (double)drive->torque_Nm};
-    *measured = seen;
+    const laconic_library_measured numbers = {(int32_t)drive->target.mode, drive->faults,
+                                              drive->encoder.count,        (double)drive->speed_rad_per_s,
+                                              (double)drive->current_A,    (double)drive->torque_Nm};
+    *measured = numbers;
 }

@@ -15,7 +15,7 @@ bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd
 }
 
 void laconic_library_inspect(const laconic_node *node, laconic_library_view *view) {
-    const laconic_library_view seen = {
+    const laconic_library_view copy = {
         .state = node->state,
         .deaf = node->session.deaf != 0,
         .steps = node->plant.steps,
@@ -23,21 +23,21 @@ void laconic_library_inspect(const laconic_node *node, laconic_library_view *vie
                       (double)node->input[0].voltage_V[2]},
         .counters = node->counters,
     };
-    *view = seen;
+    *view = copy;
 }
 
 #if LACONIC_NODE_WITH_HINGES
 static void motion_with_hinges(const laconic_node *node, laconic_library_motion *motion) {
     laconic_articulated_motion now;
     laconic_node_motion_of(&now, node);
-    const laconic_library_motion seen = {
+    const laconic_library_motion copy = {
         .x_m = (double)now.x_m,
         .y_m = (double)now.y_m,
         .heading_rad = (double)now.heading_rad,
         .velocity_m_per_s = {(double)now.velocity_m_per_s[0], (double)now.velocity_m_per_s[1]},
         .yaw_rate_rad_per_s = (double)now.yaw_rate_rad_per_s,
     };
-    *motion = seen;
+    *motion = copy;
 }
 
 /* Angle and speed of an axis: a wheel, or behind the last a hinge. */
@@ -63,14 +63,14 @@ void laconic_library_motion_of(const laconic_node *node, laconic_library_motion 
     laconic_real velocity[2];
     laconic_pose_of(&pose, model, state);
     const double yaw_rate = (double)laconic_body_velocity(model, state, velocity);
-    const laconic_library_motion seen = {
+    const laconic_library_motion copy = {
         .x_m = (double)pose.x_m,
         .y_m = (double)pose.y_m,
         .heading_rad = (double)pose.heading_rad,
         .velocity_m_per_s = {(double)velocity[0], (double)velocity[1]},
         .yaw_rate_rad_per_s = yaw_rate,
     };
-    *motion = seen;
+    *motion = copy;
 }
 
 int32_t laconic_library_drive_count(const laconic_node *node) { return node->drives.count; }
@@ -93,7 +93,7 @@ bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic
         laconic_plant_wheel_speeds(&node->plant, speed);
         laconic_plant_wheel_angles(&node->plant, angle);
     }
-    const laconic_library_drive seen = {
+    const laconic_library_drive copy = {
         .wheel = wheel,
         .node_id = it->settings.node_id,
         .mode = (int32_t)it->target.mode,
@@ -114,7 +114,7 @@ bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic
         .wheel_speed_rad_per_s = (double)speed[wheel],
         .wheel_angle_rad = (double)angle[wheel],
     };
-    *view = seen;
+    *view = copy;
     return true;
 }
 
@@ -145,10 +145,10 @@ static void try_error(laconic_error_census *census, const uint8_t frame[8], uint
     for (unsigned k = 0; k < 8; k++) data[k] = (uint8_t)(frame[k] ^ (error >> (8U * k) & 255U));
     laconic_e2e_receiver receiver = {.known = true, .counter = (uint8_t)((frame[1] - 1U) & mask)};
     const laconic_e2e_ends ends = {LACONIC_E2E_P22_START, data_ids[data[1] & mask]};
-    const bool right = laconic_e2e_p22_crc_is_right(data, 8, ends);
-    const laconic_e2e_status status = laconic_e2e_check(&receiver, right, data[1] & mask, mask, max_delta);
+    const bool is_right = laconic_e2e_p22_crc_is_right(data, 8, ends);
+    const laconic_e2e_status status = laconic_e2e_check(&receiver, is_right, data[1] & mask, mask, max_delta);
     uint64_t *counts = (data[1] & mask) == (frame[1] & mask) ? census->counter_kept : census->counter_changed;
-    counts[!right ? 0 : laconic_e2e_accepts(status) ? 2 : 1]++;
+    counts[!is_right ? 0 : laconic_e2e_accepts(status) ? 2 : 1]++;
 }
 
 void laconic_library_census(laconic_error_census *census, const uint8_t frame[8], const uint8_t data_ids[16],

@@ -1,27 +1,5 @@
 /* Tests of vehicles with hinges in the node: each step and each frame against the core's own functions. */
 #include "hinge_bench.h"
-#include "laconic_node/integrity.h"
-
-/* Bytes 5 and 6 of SELECT are those of hinges. */
-static uint8_t select_bits(uint8_t send, uint8_t raw, uint8_t take, uint8_t of_hinges, uint8_t take_hinges) {
-    uint8_t payload[LACONIC_FRAME_BYTES] = {0, 0, send, raw, take, of_hinges, take_hinges};
-    bench_send(LACONIC_WIRE_SELECT, payload);
-    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
-}
-
-static void steer(uint8_t page, int16_t first, int16_t second, int16_t third, bool sync) {
-    const int16_t number[3] = {first, second, third};
-    uint8_t payload[LACONIC_FRAME_BYTES] = {0, (uint8_t)(page << 5 | sync << 4)};
-    for (int k = 0; k < 3; k++) put16(payload + 2 + 2 * k, (uint32_t)number[k]);
-    bench_send(LACONIC_WIRE_STEERING, payload);
-    bench_tick_lockstep();
-}
-
-static void load_tricycle(const parameter *hinge) {
-    begin_tricycle(hinge);
-    if (hinge == &coordinated) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&ahead));
-    TEST_ASSERT_EQUAL_UINT8(0, commit());
-}
 
 /* One step of the core from a copy of the node's state. */
 static laconic_articulated_state stepped(laconic_articulated_input start, laconic_articulated_input end) {
@@ -80,22 +58,6 @@ static void what_a_vehicle_with_hinges_does_not_have_is_refused(void) {
     }
 }
 
-/* On ground with friction, with a servo on the hinge. */
-static void begin_slipping(void) {
-    const parameter more[] = {NUMBER(GROUND_FRICTION_COEFFICIENT, 0, 0.3),
-                              INTEGER(BODY_HINGE, 1, LACONIC_HINGE_FREE),
-                              NUMBER(SERVO_GAIN, 1, 60),
-                              NUMBER(SERVO_DAMPING, 1, 2),
-                              NUMBER(SERVO_LIMIT, 1, 3),
-                              NUMBER(HINGE_DRY_FRICTION, 1, 0.01),
-                              INTEGER(HINGE_HITCH, 1, 1),
-                              NUMBER(SCRUB_RADIUS, 3, 0.01),
-                              NUMBER(START_WHEEL_SPEED, 1, 5),
-                              NUMBER(START_HINGE_ANGLE, 1, 0.2)};
-    begin_tricycle(&prescribed);
-    for (size_t k = 0; k < sizeof more / sizeof more[0]; k++) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&more[k]));
-}
-
 static void wheels_of_hinges_slip_as_in_the_core_under_voltages_and_angles(void) {
     laconic_tree_input held = {0};
     begin_slipping();
@@ -120,10 +82,9 @@ static void wheels_of_hinges_slip_as_in_the_core_under_voltages_and_angles(void)
 
 static void what_ground_with_friction_lacks_is_refused_by_its_field(void) {
     const parameter method = INTEGER(METHOD, 0, 1), coordination = INTEGER(BODY_HINGE, 1, LACONIC_HINGE_COORDINATED);
-    const parameter step = NUMBER(STEP, 0, 0), drives = INTEGER(DRIVE_PROTOCOL, 0, 1);
-    const parameter *wrong[] = {&method, &coordination, &step, &drives};
-    const uint8_t statuses[] = {LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_COORDINATED_SLIPS, LACONIC_NOT_POSITIVE,
-                                LACONIC_WIRE_STATUS_NOT_SUPPORTED};
+    const parameter step = NUMBER(STEP, 0, 0);
+    const parameter *wrong[] = {&method, &coordination, &step};
+    const uint8_t statuses[] = {LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_COORDINATED_SLIPS, LACONIC_NOT_POSITIVE};
     for (size_t k = 0; k < sizeof statuses; k++) {
         begin_slipping();
         TEST_ASSERT_EQUAL_UINT8(0, send_parameter(wrong[k]));
@@ -379,29 +340,6 @@ static void a_plain_vehicle_after_one_with_hinges_moves_by_the_plant(void) {
     TEST_ASSERT_EQUAL_UINT32(0, node.pending & PENDING_OF_HINGES);
 }
 
-/* A flipped bit of the motion or of the model between two calls ends the run. */
-static void memory_of_hinges_is_watched(void) {
-    static const laconic_integrity_limits none = {0, 0, 0, 0};
-    static laconic_integrity watch;
-    const laconic_node_config config = node.config;
-    for (int of_model = 0; of_model < 2; of_model++) {
-        bench_begin();
-        laconic_node_config original = config;
-        load_tricycle(&prescribed);
-        bench_start_lockstep();
-        laconic_integrity_begin(&watch, &node, &original, &none, LACONIC_INTEGRITY_ALL);
-        watch.has_vehicle = true;
-        node.config = original;
-        if (of_model)
-            node.hinges.model.wheel_count ^= 4;
-        else
-            node.hinges.state.hinge[0].rest += 1;
-        laconic_integrity_on_tick(&watch, &node, now_us);
-        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
-        TEST_ASSERT_EQUAL_UINT8(of_model ? LACONIC_INTEGRITY_OF_MODEL : LACONIC_INTEGRITY_OF_MOTION, watch.broken);
-    }
-}
-
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_vehicle_with_hinges_comes_by_parameters);
@@ -427,6 +365,5 @@ int main(void) {
     RUN_TEST(a_watchdog_holds_the_hinges_and_lets_the_vehicle_coast);
     RUN_TEST(a_stopped_car_keeps_the_direction_of_its_wheels);
     RUN_TEST(a_plain_vehicle_after_one_with_hinges_moves_by_the_plant);
-    RUN_TEST(memory_of_hinges_is_watched);
     return UNITY_END();
 }

@@ -82,6 +82,43 @@ static inline void begin_tricycle(const parameter *hinge) {
     TEST_ASSERT_EQUAL_UINT8(0, send_parameter(hinge));
 }
 
+/* Bytes 5 and 6 of SELECT are those of hinges. */
+static inline uint8_t select_bits(uint8_t send, uint8_t raw, uint8_t take, uint8_t of_hinges, uint8_t take_hinges) {
+    uint8_t payload[LACONIC_FRAME_BYTES] = {0, 0, send, raw, take, of_hinges, take_hinges};
+    bench_send(LACONIC_WIRE_SELECT, payload);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+}
+
+static inline void steer(uint8_t page, int16_t first, int16_t second, int16_t third, bool sync) {
+    const int16_t number[3] = {first, second, third};
+    uint8_t payload[LACONIC_FRAME_BYTES] = {0, (uint8_t)(page << 5 | sync << 4)};
+    for (int k = 0; k < 3; k++) put16(payload + 2 + 2 * k, (uint32_t)number[k]);
+    bench_send(LACONIC_WIRE_STEERING, payload);
+    bench_tick_lockstep();
+}
+
+static inline void load_tricycle(const parameter *hinge) {
+    begin_tricycle(hinge);
+    if (hinge == &coordinated) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&ahead));
+    TEST_ASSERT_EQUAL_UINT8(0, commit());
+}
+
+/* On ground with friction, with a servo on the hinge. */
+static inline void begin_slipping(void) {
+    const parameter more[] = {NUMBER(GROUND_FRICTION_COEFFICIENT, 0, 0.3),
+                              INTEGER(BODY_HINGE, 1, LACONIC_HINGE_FREE),
+                              NUMBER(SERVO_GAIN, 1, 60),
+                              NUMBER(SERVO_DAMPING, 1, 2),
+                              NUMBER(SERVO_LIMIT, 1, 3),
+                              NUMBER(HINGE_DRY_FRICTION, 1, 0.01),
+                              INTEGER(HINGE_HITCH, 1, 1),
+                              NUMBER(SCRUB_RADIUS, 3, 0.01),
+                              NUMBER(START_WHEEL_SPEED, 1, 5),
+                              NUMBER(START_HINGE_ANGLE, 1, 0.2)};
+    begin_tricycle(&prescribed);
+    for (size_t k = 0; k < sizeof more / sizeof more[0]; k++) TEST_ASSERT_EQUAL_UINT8(0, send_parameter(&more[k]));
+}
+
 static inline laconic_articulated_motion motion(void) {
     laconic_articulated_motion now;
     laconic_node_motion_of(&now, &node);

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import random
 import re
 import shutil
 import subprocess
@@ -17,7 +18,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from assurance.common import Entry, Unusable, build, called, each, of_targets, once, work
-from assurance.fuzz import seeds
 
 HERE = Path(__file__).parent
 CHECKS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -32,18 +32,21 @@ WITHOUT = ("batch", "soft_double")  # folders of the core
 
 @dataclass(frozen=True)
 class Target:
-    """`most_bytes`: of an input. `takes`: what it is linked with; `also`: further sources and options."""
+    """`most_bytes`: of an input. `takes`: what it is linked with; `also`: further sources and options. `source`: the
+    name in fuzz_NAME.c, the target's own if empty."""
 
     most_bytes: int
     takes: tuple[str, ...]
     also: tuple[str, ...] = ()
+    source: str = ""
 
 
 NODE, FMI = ("node", "core"), ("fmi",)
 CHECKSUM = ("fuzz_checksum.c", "-Wl,--wrap=fmu_checksum")
 TARGETS = {"slcan": Target(400, ("node:slcan",)), "frames": Target(240, NODE), "loader": Target(1000, NODE),
            "vehicle": Target(120, ("core",)), "steps": Target(80, ("core",)), "canopen": Target(240, NODE),
-           "odrive": Target(200, NODE), "moteus": Target(200, NODE), "robomaster": Target(150, NODE),
+           **{name: Target(most_bytes, NODE, (f"-DFUZZ_{name.upper()}",), "drives")
+              for name, most_bytes in (("odrive", 200), ("moteus", 200), ("robomaster", 150))},
            "fmi": Target(100, FMI, CHECKSUM), "fmu_state": Target(100, FMI, CHECKSUM),
            "bus": Target(300, ("bus:ls_bus,can_controller,network_port",))}
 
@@ -91,7 +94,8 @@ def program(name: str) -> Path:
     also = [str(HERE / word) if word.endswith(".c") else word for word in target.also]
     replay = [] if command[0] != "gcc" else [HERE / "replay_main.c"]
     out = work("fuzz") / f"fuzz_{name}"
-    called([*command, *headers, HERE / f"fuzz_{name}.c", *also, *replay, *(archive for archive, _ in made), "-o", out])
+    archives = [archive for archive, _ in made]
+    called([*command, *headers, HERE / f"fuzz_{target.source or name}.c", *also, *replay, *archives, "-o", out])
     return out
 
 
@@ -100,7 +104,7 @@ def search(name: str, seconds: float, runs: int | None, seed: int) -> bool:
     target, made, folder = TARGETS[name], program(name), work("fuzz") / "inputs" / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    seeds.write(name, target.most_bytes, folder)
+    write_seeds(name, target.most_bytes, folder)
     limit = [f"-runs={runs}"] if runs is not None else [f"-max_total_time={max(1, round(seconds))}"]
     options = [f"-seed={seed}", *limit, "-reload=0", "-timeout=20", f"-max_len={target.most_bytes}",
                "-rss_limit_mb=1024", f"-artifact_prefix={folder.parent}/{name}-"]
@@ -139,3 +143,43 @@ def run(options: argparse.Namespace) -> bool:
         else:
             found &= search(name, options.seconds, options.runs, options.seed)
     return found
+
+
+# ---- Seeds for the fuzz targets: a few dozen inputs each, made anew with every run. Coverage leads on from them.
+
+SEEDS = 24
+LINES = (b"O\r", b"L\r", b"C\r", b"S6\r", b"V\r", b"N\r", b"F\r", b"Y2\r", b"t10080102030405060708\r",
+         b"T123456788AABBCCDD\r", b"r1234\r", b"R1FFFFFFF0\r",
+         b"d0609" + 24 * b"A5" + b"\r", b"D1234567F" + 64 * b"0F" + b"\r", b"b1111FF\r")
+RECORDS = {"frames": (10, 32), "canopen": (12, 16), "loader": (7, 64)}
+"""Of targets whose inputs are records: their bytes, and how many choices their first byte has."""
+
+
+def write_seeds(target: str, most_bytes: int, folder: Path) -> None:
+    """The same ones each time."""
+    source = random.Random(target)
+    for number in range(SEEDS):
+        (folder / f"seed-{number:02}").write_bytes(seed_of(target, source, most_bytes)[:most_bytes])
+
+
+def seed_of(target: str, source: random.Random, most_bytes: int) -> bytes:
+    """One input."""
+    if target == "slcan":
+        return b"1O\r" + b"".join(source.choice(LINES) for _ in range(source.randrange(1, 12)))
+    if target in RECORDS:
+        length, choices = RECORDS[target]
+        return b"".join(bytes([source.randrange(choices)]) + source.randbytes(length - 1)
+                        for _ in range(most_bytes // length))
+    if target in ("odrive", "moteus", "robomaster"):
+        return b"".join(drive_record(source) for _ in range(12))
+    # numbers mostly from the tables of usual ones
+    return bytes(source.randrange(128) if source.random() < 0.7 else source.randrange(256)
+                 for _ in range(source.randrange(8, most_bytes)))
+
+
+def drive_record(source: random.Random) -> bytes:
+    """Steps, or a frame to a drive."""
+    if source.random() < 0.4:
+        return bytes([128 + source.randrange(128)])
+    length, number = source.randrange(9), source.choice((1, 2)) << source.choice((0, 5)) | source.randrange(32)
+    return bytes([length]) + number.to_bytes(4, "little") + source.randbytes(length)

@@ -20,7 +20,7 @@ LANES, RUNS, MOST_STEPS = 48, 4, 60
 FAST, LOST = 0.1, 0.02  # shares of lanes that start too fast for most steps, and that have an input of NaN
 
 
-def run(clock: Clock, seed: int) -> list[str]:
+def run_batch(clock: Clock, seed: int) -> list[str]:
     """Populations until the time is over, one at least."""
     random, counted, wrong = np.random.default_rng(seed), Counter[str](), list[str]()
     while not counted or clock:

@@ -296,7 +296,7 @@ def row_of(prepared: Prepared, state: Any, real: str, steps: int, step_s: float)
             "turns": float(turned / (2 * mp.pi))}
 
 
-def run(clock: Clock, seed: int) -> list[str]:
+def run_drift(clock: Clock, seed: int) -> list[str]:
     """Pieces of all runs until the time is over; nothing is drawn."""
     runs = [Run(method, real) for real in NUMBERS for method in METHODS]
     while runs[0].done == 0 or clock:

@@ -18,7 +18,7 @@ NARROW = 1e-12
 STEPS_S = ("0.001", "0.01")
 
 
-def run(clock: Clock, seed: int) -> list[str]:
+def run_enclosures(clock: Clock, seed: int) -> list[str]:
     """Every scene to its end, however long; then random vehicles until the time is up. All must be narrow."""
     source, wide, drawn = random.Random(seed), list[str](), list[EnclosedResult]()
     for name in rigid_scene_names():

@@ -12,7 +12,7 @@ TARGETS = ("Laconic_fmi2", "Laconic_fmi3", "laconic_fmu_core")
 CYCLES, THREADS = 2000, 8
 
 
-def run(clock: Clock, seed: int) -> list[str]:
+def run_fmu(clock: Clock, seed: int) -> list[str]:
     """Cycles until the time is over, and the threads once."""
     cycles, threads = program("address,undefined"), program("thread")
     wrong, done = complaint([threads, "threads", str(THREADS)]), 0

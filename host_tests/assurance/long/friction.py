@@ -24,7 +24,7 @@ MOST_COLD_REFUSED, MOST_WARM_REFUSED = 1e-2, 1e-3
 PARTS = ("cold", "hard", "warm", "coasting", "at rest")
 
 
-def run(clock: Clock, seed: int) -> list[str]:
+def run_friction(clock: Clock, seed: int) -> list[str]:
     """A piece of each part in turn until the time is over, one at least."""
     solved, single = {"cold": Count(), "hard": Count(), "warm": Count()}, Count()
     moved = {f"{part}, {real}": Coasted() for part in PARTS[3:] for real in ("double", "single")}

@@ -20,7 +20,7 @@ from laconic.errors import BadInput
 from laconic.fmu.hinges import left_out
 from laconic.robot.bags.messages import store
 from laconic.scene.base import BaseTable, joint_names
-from laconic.scene.scene_text import lines_of
+from laconic.scene.scene_tables import lines_of
 
 REFERENCE = Path(__file__).parents[1] / "data" / "articulated_reference.json"
 DOES_NOT = "does not take vehicles with hinges"

@@ -1,7 +1,7 @@
 """The packages of embedded tools: the files of the amalgamation, and what each tool wants beside them, from templates.
 
-In templates `@name@` stands for a fact (facts.py), `@robot@` and `@main@` for what all examples share (robot.c.in,
-main.c.in).
+A tool's template, such as zephyr.txt, has its files one after the other, each below a line `==== its path`. There
+`@name@` stands for a fact (facts.py), `@robot@` and `@main@` for what all examples share (robot.c.in, main.c.in).
 """
 
 from __future__ import annotations
@@ -54,11 +54,15 @@ def package(tool: str, pair: Mapping[str, str], values: Mapping[str, str], facts
     headers = TOOLS[tool].headers
     files = {f"{headers if name.endswith('.h') else 'src'}/{name}": text for name, text in pair.items()}
     files |= {f"{headers}/laconic/{name}": BY_ITS_FOLDER.format(name=name) for name in pair if name.endswith(".h")}
-    files |= {"LICENSE": facts.licence, "README.md": filled(TEMPLATES / "README.md", values)}
-    folder = TEMPLATES / tool
-    files |= {path.relative_to(folder).as_posix(): filled(path, values)
-              for path in sorted(folder.rglob("*")) if path.is_file()}
+    files |= {"LICENSE": facts.licence, "README.md": filled((TEMPLATES / "README.md").read_text("utf-8"), values)}
+    files |= {path: filled(text, values) for path, text in template_of(tool).items()}
     return dict(sorted(files.items()))
+
+
+def template_of(tool: str) -> dict[str, str]:
+    """The files of a tool's template, by their paths in its package."""
+    _, *parts = re.split(r"^==== (.+)\n", (TEMPLATES / f"{tool}.txt").read_text("utf-8"), flags=re.MULTILINE)
+    return dict(zip(parts[::2], parts[1::2], strict=True))
 
 
 def values_of(facts: Facts) -> dict[str, str]:
@@ -93,8 +97,9 @@ def first_change() -> str:
     return one(r"\A# Changelog\n\n## .*\n\n(.*)$", text)
 
 
-def filled(path: Path, values: Mapping[str, str]) -> str:
-    return re.sub(r"@(\w+)@", lambda found: values[found[1]], path.read_text(encoding="utf-8"))
+def filled(text: str, values: Mapping[str, str]) -> str:
+    """A template's text with the facts in it."""
+    return re.sub(r"@(\w+)@", lambda found: values[found[1]], text)
 
 
 def archive(tool: str, files: Mapping[str, str], facts: Facts) -> tuple[str, bytes]:

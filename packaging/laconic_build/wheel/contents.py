@@ -23,7 +23,7 @@ CORE = ("amalgamation/laconic.h", "amalgamation/laconic.c")
 REALS = ("double", "single")
 LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in REALS)
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
-DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
+DECLARATIONS = ("laconic_cdef_double.py", "laconic_cdef_single.py", "laconic_node_cdef.py")
 FMUS = (*(f"{name}_fmi{version}.fmu"
           for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicArticulated", "LaconicSlipping",
                        "LaconicController")

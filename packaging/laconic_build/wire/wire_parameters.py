@@ -12,8 +12,66 @@ import xml.etree.ElementTree as ET
 from laconic.base.paths import SOURCE_DIR
 from laconic.core import Field, load
 
-from .drive_parameters import drive_parameters, unit_of
-from .sensor_parameters import sensor_parameters
+# ---- Motor drives, from the rows of their list (laconic_drives/settings.h).
+
+DRIVE_LIST = SOURCE_DIR / "firmware_stub" / "include" / "laconic_drives" / "settings.h"
+DRIVE_ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+), +\w+, +(\w+),[\s\\]+(\w+),[\s\\]+\w+\)")
+UNITS = {"A": "A", "V": "V", "s": "s", "ohm": "Ω", "rad_per_s": "rad/s", "per_s": "1/s", "Nm_per_A": "N m/A",
+         "As": "A s", "Vs_per_rad": "V s/rad", "m": "m", "rad": "rad", "m_per_s2": "m/s²",
+         "m_per_s2_per_sqrt_Hz": "m/s²/√Hz", "rad_per_s_per_sqrt_Hz": "rad/s/√Hz", "kg": "kg", "kgm2": "kg m²",
+         "Nms": "N m s", "Nm": "N m", "Nm_per_V": "N m/V", "m_per_s": "m/s"}
+DRIVE_NOTES = {"DRIVE_PROTOCOL": ": see below; 0 or not sent: no drives",
+               "DRIVE_NODE_ID": ": of a wheel that has a drive; it is sent for no other wheel",
+               "DRIVE_GEAR_RATIO": ": turns of the shaft for one of the wheel, below 0: reversed; not 0",
+               "DRIVE_WATCHDOG": ": longest silence of the controller; 0: what the protocol says",
+               "DRIVE_STALL_TIME": ": so long at a limit of the current without motion is a stall; 0: none",
+               "DRIVE_BACK_EMF": ": 0: as the torque constant"}
+
+
+def unit_of(member: str, kind: str) -> str:
+    """The unit that a member's name ends with."""
+    endings = [ending for ending in UNITS if member.endswith("_" + ending)]
+    return "integer" if kind == "INTEGER" else UNITS[max(endings, key=len)] if endings else "1"
+
+
+def drive_parameters() -> dict[str, tuple[str, str, str, str]]:
+    """Field in the DBC → key in a scene, unit, item, when it is required."""
+    found = {}
+    for identifier, member, kind, rule in DRIVE_ROW.findall(DRIVE_LIST.read_text(encoding="utf-8")):
+        item = "0" if identifier in ("DRIVE_PROTOCOL", "DRIVE_WATCHDOG") else "wheel, hinge"
+        required = "each drive, else NOT_POSITIVE" if rule in ("POSITIVE", "NOT_ZERO") else ""
+        key = "node_ids" if member == "node_id" else member
+        key = f"rig.drives.{key}{DRIVE_NOTES.get(identifier, '')}"
+        found[identifier] = (key, unit_of(member, kind), item, required)
+    return found
+
+
+# ---- Sensors, from the rows of their list (laconic/sensors.h).
+
+SENSOR_LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "sensors.h"
+SENSOR_GROUP = re.compile(r"#define LACONIC_(\w+)_FIELDS\(X, of\)((?:.*\\\n)*.*)")
+SENSOR_ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+),[\s\\]+\w+,[\s\\]+(\w+),[\s\\]+\w+,[\s\\]+\w+\)")
+SENSOR_TABLES = {"IMU": ("imu", "0"), "IMU_ARRAY": ("imu", "1, 2"), "ENCODER": ("encoder", "0"),
+                 "WHEEL_ENCODER": ("encoder", "wheel")}
+SENSOR_NOTES = {"IMU_ACCELERATION_RANGE": ": 0: none", "IMU_YAW_RATE_RANGE": ": 0: none",
+                "IMU_DELAY": ": in a scene delay_s",
+                "WHEEL_ENCODER_COUNTS": ": 0 or not sent: the wheel has no encoder",
+                "WHEEL_ENCODER_GEAR_RATIO": ": turns of the encoder for one of the wheel, below 0: reversed; 0: 1",
+                "WHEEL_ENCODER_WRAP": ": it shows 0 to one less; 0: 32 bits with sign"}
+
+
+def sensor_parameters() -> dict[str, tuple[str, str, str, str]]:
+    """Field in the DBC → key in a scene, unit, item, when it is required."""
+    found = {}
+    for group, rows in SENSOR_GROUP.findall(SENSOR_LIST.read_text(encoding="utf-8")):
+        table, item = SENSOR_TABLES[group]
+        for identifier, member, kind in SENSOR_ROW.findall(rows):
+            key = f"sensors.{table}.{member}{SENSOR_NOTES.get(identifier, '')}"
+            found[identifier] = (key, unit_of(member, kind), item, "")
+    return found
+
+
+# ---- The vehicle, from the list of the core, and its hinges.
 
 NEEDS = {
     "NEVER": "", "ALWAYS": "always", "WITH_WHEELS": "with wheels", "WITH_MOTOR": "with the other of the motor",

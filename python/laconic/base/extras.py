@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from importlib.metadata import PackageNotFoundError, requires
 
 from laconic.base.paths import IS_WHEEL
 from laconic.errors import BadInput
@@ -25,6 +24,8 @@ def missing_module(error: ModuleNotFoundError) -> BadInput:
 
 def extra_of(distribution: str) -> str:
     """The first extra that brings a distribution; empty where none does."""
+    from importlib.metadata import PackageNotFoundError, requires  # slow to load, and seldom needed
+
     try:
         lines = requires("laconic") or []
     except PackageNotFoundError:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from importlib.util import module_from_spec
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +72,15 @@ def built(relative: str) -> Path:
 def library(name: str) -> Path:
     """A shared library that was built, by its name on every system: laconic_double, laconic_node_single …"""
     return built("lib/" + LIBRARY_NAMES.get(sys.platform, "lib{}.so").format(name))
+
+
+def declarations(name: str) -> Any:
+    """The types and functions of a library, as cffi's object that opens it; the build writes them as a module."""
+    path = built(f"lib/{name}.py")
+    loader = SourceFileLoader(name, str(path))
+    module = module_from_spec(ModuleSpec(name, loader, origin=str(path)))
+    loader.exec_module(module)
+    return module.ffi
 
 
 def sources_missing() -> str:

@@ -7,9 +7,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
 Advance = Callable[..., None]
 FIRST_WORD_S = 0.5  # after so long stderr states how long the work takes,
 LONG_S = 60.0       # if that is longer than this
@@ -22,10 +19,13 @@ def progress_bar(what: str, total: float, *, forecasts: bool = False) -> Iterato
     Where stderr is no terminal, a line a minute states how far the work is; `forecasts`: one line how long it takes, if
     that is long.
     """
-    console = Console(stderr=True)
-    if not console.is_terminal:
+    if not (sys.stderr and sys.stderr.isatty()):
         yield forecast(what, total) if forecasts else each_minute(what, total)
         return
+    from rich.console import Console  # here, as it would take a third of the start of every command
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(what, total=total)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import importlib
 import logging
 import os
@@ -54,6 +53,8 @@ class LazyCommands(click.Group):
 
 def summary(command: str) -> str:
     """The line of `laconic --help` for a command: the docstring of its module, read without an import."""
+    import ast
+
     source = Path(laconic.cli.commands.__path__[0], f"{command}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
 

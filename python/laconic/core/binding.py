@@ -18,9 +18,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from cffi import FFI
 
-from laconic.base.paths import built, library
+from laconic.base.paths import declarations, library
 from laconic.core.copies import register
 from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, check_there, items, number, numbers, one_of, several, table
@@ -55,8 +54,7 @@ def load(real: str = "double") -> Core:
 
 @cache
 def _loaded(real: str) -> Core:
-    ffi = FFI()
-    ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text(encoding="utf-8"))
+    ffi = declarations(f"laconic_cdef_{real}")
     core = Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
     register(core)
     return core
@@ -65,7 +63,7 @@ def _loaded(real: str) -> Core:
 class Core:
     """The C functions of one scalar type, with Python's types and exceptions."""
 
-    def __init__(self, real: str, ffi: FFI, lib: Any):
+    def __init__(self, real: str, ffi: Any, lib: Any):
         self.real, self.ffi, self.lib = real, ffi, lib
         self.dtype: np.dtype[Any] = np.dtype(np.float64 if ffi.sizeof("laconic_real") == 8 else np.float32)
         fields = dict(ffi.typeof("laconic_vehicle").fields)

@@ -23,7 +23,7 @@ from laconic.errors import BadInput
 if TYPE_CHECKING:
     from laconic.core import Core
 
-METHOD = "laconic_method *"
+METHOD = "struct laconic_method *"
 NO_ADDRESS = -1
 _cores: list[Core] = []  # whose structs are known
 
@@ -68,7 +68,7 @@ def register(core: Core) -> None:
 def _reduced(struct: Any) -> tuple[Any, ...]:
     for core in _cores:
         kind = core.ffi.typeof(struct)
-        name = kind.item.cname if kind.kind in ("pointer", "array") else ""
+        name = kind.item.cname.removeprefix("struct ") if kind.kind in ("pointer", "array") else ""
         if name.startswith("laconic_") and core.ffi.typeof(name) is kind.item:
             size = core.ffi.sizeof(kind.item) if kind.kind == "pointer" else core.ffi.sizeof(struct)
             count = None if kind.kind == "pointer" else len(struct)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any
 
@@ -40,7 +41,8 @@ def is_bytes(value: Any) -> bool:
 
 def is_masked(value: Any) -> bool:
     """Whether NumPy holds no measurement there: it would show NaN or whatever stands under the mask."""
-    return isinstance(value, np.ma.MaskedArray) and bool(np.ma.is_masked(value))
+    known = sys.modules.get("numpy.ma")  # NumPy loads it late: there is no such array before
+    return known is not None and isinstance(value, known.MaskedArray) and bool(np.ma.is_masked(value))
 
 
 def number(name: str, value: Any) -> float:

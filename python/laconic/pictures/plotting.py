@@ -18,13 +18,14 @@ from laconic.base.paths import as_path
 from laconic.core.given import shown
 from laconic.errors import BadInput
 from laconic.pictures.articulated import is_drawn, plot_hinges, plot_slipping, plot_vehicle_path, slipping_panels
-from laconic.pictures.curve_style import style_of, wrapped
 from laconic.pictures.curves import (
     head,
     plot_beside_yaw_rate,
     plot_over_time,
     plot_sensors,
     sensor_panels,
+    style_of,
+    wrapped,
 )
 
 if TYPE_CHECKING:

@@ -32,12 +32,11 @@ MARGIN_S = 0.02              # between looks at what the ground must give
 class Hinged:
     """One robot with hinges."""
 
-    def __init__(self, scene: Scene, core: Core, signals: Sequence[str], chassis: Chassis):
-        self.scene, self.live = scene, LiveInputs(signals, scene.run.step_s)
-        vehicle = scene.articulated_vehicle(core)
+    def __init__(self, scene: Scene, core: Core, of_wheels: Sequence[str], chassis: Chassis):
         self.steering = Steering(chassis, scene, scene.base or BaseTable())
-        count = len(self.steering.signals)
-        self._first = len(signals) - count
+        self.scene, self.live = scene, LiveInputs([*of_wheels, *self.steering.signals], scene.run.step_s)
+        vehicle = scene.articulated_vehicle(core)
+        self._first, count = len(of_wheels), len(self.steering.signals)
         self.live.values[self._first :] = [*STRAIGHT, *[0.0] * (count - 3)] if vehicle.is_coordinated else 0.0
         self.commands = Commands(scene, vehicle, self.live)
         self.row = self.commands.first_row()
@@ -67,14 +66,14 @@ class Hinged:
 class HingedRobots:
     """Robots with hinges, one by one."""
 
-    def __init__(self, scene: Scene, robots: int, signals: Sequence[str], chassis: Chassis):
+    def __init__(self, scene: Scene, robots: int, of_wheels: Sequence[str], chassis: Chassis):
         self.scene, self.core, self.steps = scene, scene.core(), 0
-        self._signals, self._chassis = signals, chassis
+        self._of_wheels, self._chassis = of_wheels, chassis
         self._centre, self._loads = centre_of(scene.vehicle), Loads(scene)
         self.robots = [self._new(scene) for _ in range(robots)]
 
     def _new(self, scene: Scene) -> Hinged:
-        return Hinged(scene, self.core, self._signals, self._chassis)
+        return Hinged(scene, self.core, self._of_wheels, self._chassis)
 
     def step(self, given: np.ndarray) -> list[tuple[int, Refused]]:
         """As Motion.step."""
@@ -166,11 +165,10 @@ class HingedBase(Base):
         if not self._measured.any():
             raise BadInput(f"{scene.path}: vehicle.wheel: no driven wheel is on the carriage or on what steers, so no "
                            "command can move the robot; give one with driven = true")
-        loop = loop_of(scene, table, self.believed.radius_m.tolist())
-        self.loop, self._steering_signals = loop, Steering(self.believed, scene, table).signals
+        self.loop = loop_of(scene, table, self.believed.radius_m.tolist())
         self._rate_limit = np.full(robots, math.inf)
         self._own_ramps = np.full(robots, math.inf)
-        return HingedRobots(scene, robots, self.signals, self.believed), loop
+        return HingedRobots(scene, robots, super().signals, self.believed), self.loop
 
     def _travelled(self, before: np.ndarray, after: np.ndarray) -> Sequence[float]:
         count = len(self._measured)  # the angles of all hinges are behind those of the wheels
@@ -179,7 +177,7 @@ class HingedBase(Base):
     @property
     def signals(self) -> list[str]:
         """As in Base."""
-        return [*super().signals, *self._steering_signals]
+        return [*super().signals, *self.motion.robots[0].steering.signals]
 
     # ---- commands
 

@@ -53,7 +53,8 @@ def _submessage(kind: int, flags: int, body: bytes) -> bytes:
     return struct.pack("<BBH", kind, flags | LITTLE, len(body)) + body
 
 
-def _number(value: int) -> bytes:
+def number_bytes(value: int) -> bytes:
+    """The number of a change."""
     return struct.pack("<iI", value >> 32, value & 0xFFFFFFFF)
 
 
@@ -66,23 +67,25 @@ def data(reader: bytes, writer: bytes, number: int, payload: bytes, *, inline: b
         inline += struct.pack("<HH", KEY_HASH, 16) + key
     inline += struct.pack("<HH", SENTINEL, 0) if inline else b""
     flags = (WITH_INLINE if inline else 0) | (WITH_KEY if is_key else WITH_DATA)
-    return _submessage(DATA, flags, struct.pack("<HH", 0, 16) + reader + writer + _number(number) + inline + payload)
+    head = struct.pack("<HH", 0, 16) + reader + writer + number_bytes(number)
+    return _submessage(DATA, flags, head + inline + payload)
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int) -> bytes:
     """What a writer has; its reader answers."""
-    return _submessage(HEARTBEAT, 0, reader + writer + _number(first) + _number(last) + struct.pack("<i", count))
+    numbers = number_bytes(first) + number_bytes(last) + struct.pack("<i", count)
+    return _submessage(HEARTBEAT, 0, reader + writer + numbers)
 
 
 def _numbers(base: int, numbers: Sequence[int]) -> bytes:
     """A set of numbers from `base` on."""
     if not numbers:
-        return _number(base) + struct.pack("<I", 0)
+        return number_bytes(base) + struct.pack("<I", 0)
     count = numbers[-1] - base + 1
     words = [0] * ((count + 31) // 32)
     for each in numbers:
         words[(each - base) // 32] |= 1 << (31 - (each - base) % 32)
-    return _number(base) + struct.pack(f"<I{len(words)}I", count, *words)
+    return number_bytes(base) + struct.pack(f"<I{len(words)}I", count, *words)
 
 
 def acknack(writer: bytes, reader: bytes, awaited: int, missing: Sequence[int], count: int) -> bytes:
@@ -93,7 +96,7 @@ def acknack(writer: bytes, reader: bytes, awaited: int, missing: Sequence[int], 
 
 def gap(reader: bytes, writer: bytes, first: int, behind: int) -> bytes:
     """Numbers that do not come any more."""
-    return _submessage(GAP, 0, reader + writer + _number(first) + _numbers(behind, ()))
+    return _submessage(GAP, 0, reader + writer + number_bytes(first) + _numbers(behind, ()))
 
 
 def parameters(entries: Sequence[tuple[int, bytes]]) -> bytes:

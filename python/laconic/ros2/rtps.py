@@ -34,6 +34,7 @@ from laconic.ros2.packets import (
     heartbeat,
     identity_parameters,
     locator,
+    number_bytes,
     number_of,
     packet,
     packets_of,
@@ -50,6 +51,12 @@ MOST_KEPT = 64            # responses of one service, for clients that have lost
 MOST_PACKETS = 256        # in one poll
 MOST_PARTICIPANTS = 33    # on this machine alone, as cyclonedds looks for them
 MOST_PEERS, MOST_AHEAD = 1000, 4096
+VERSIONS = ((0x0015, b"\2\3\0\0"), (0x0016, HERE + b"\0\0"))  # of the protocol, and whose it is
+
+
+def reader_of(writer: bytes) -> bytes:
+    """The reader of a built-in topic, by its writer."""
+    return writer[:3] + b"\xc7"
 
 
 @dataclass
@@ -75,15 +82,16 @@ class Incoming:
         if number < self.next or number in self.ahead or number > self.next + MOST_AHEAD:
             return False
         self.ahead.add(number)
-        while self.next in self.ahead:
-            self.ahead.remove(self.next)
-            self.next += 1
+        self._close_up()
         return True
 
     def skip(self, until: int) -> None:
         """What lies before a number does not come any more."""
         self.next = max(self.next, until)
         self.ahead = {each for each in self.ahead if each >= self.next}
+        self._close_up()
+
+    def _close_up(self) -> None:
         while self.next in self.ahead:
             self.ahead.remove(self.next)
             self.next += 1
@@ -136,6 +144,7 @@ class Services:
 
     def __init__(self, domain: int, *, is_local: bool, now_s: Callable[[], float] = time.monotonic):
         self.domain, self.is_local, self._now_s = domain, is_local, now_s
+        self._base = PORTS.base + PORTS.domain * domain
         self.prefix = HERE + os.urandom(10)
         self.servers: list[Server] = []
         self.peers: dict[bytes, Peer] = {}
@@ -151,13 +160,13 @@ class Services:
 
     def _bound(self) -> list[socket.socket]:
         """Metatraffic and user traffic by unicast; without `is_local` also the group."""
-        host, base = "127.0.0.1" if self.is_local else "", PORTS.base + PORTS.domain * self.domain
+        host = "127.0.0.1" if self.is_local else ""
         for index in range(MOST_PARTICIPANTS):
             found: list[socket.socket] = []
             try:
                 for offset in (PORTS.meta, PORTS.user):
                     found.append(udp())
-                    found[-1].bind((host, base + offset + PORTS.participant * index))
+                    found[-1].bind((host, self._base + offset + PORTS.participant * index))
                 self._meta_port, self._user_port = (each.getsockname()[1] for each in found)
                 break
             except OSError:
@@ -168,7 +177,7 @@ class Services:
         if not self.is_local:
             group = udp(is_shared=True)
             try:
-                group.bind(("", base))
+                group.bind(("", self._base))
                 group.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + bytes(4))
                 found.append(group)
             except OSError:
@@ -201,7 +210,7 @@ class Services:
                 (0x0005, text_parameter(topic)), (0x0007, text_parameter(kind)),
                 (0x001A, struct.pack("<IiI", 2, 0, 0x19999999)), (0x001D, struct.pack("<I", 0)),
                 (0x0040, struct.pack("<Ii", 0, 10)), (0x0073, struct.pack("<IhH", 1, 0, 0)),
-                (0x002C, text_parameter(user_data, ends=False)), (0x0015, b"\2\3\0\0"), (0x0016, HERE + b"\0\0")])
+                (0x002C, text_parameter(user_data, ends=False)), *VERSIONS])
             self._builtin[builtin].add(lambda number, builtin=builtin, content=content: data(  # type: ignore[misc]
                 bytes(4), builtin, number, content))
         return Guid(self.prefix + made.reader), Guid(self.prefix + made.writer.entity)
@@ -210,7 +219,7 @@ class Services:
         guid = self.prefix + PORTS.participant_entity
         where = [(0x0032, locator(self._address, self._meta_port)), (0x0031, locator(self._address, self._user_port))]
         content = parameters([
-            (0x0015, b"\2\3\0\0"), (0x0016, HERE + b"\0\0"), (0x0050, guid), (0x000F, struct.pack("<I", self.domain)),
+            *VERSIONS, (0x0050, guid), (0x000F, struct.pack("<I", self.domain)),
             *where, (0x0002, struct.pack("<iI", LEASE_S, 0)), (0x0058, struct.pack("<I", ALL_ENDPOINTS)),
             (0x002C, text_parameter("enclave=/;", ends=False))])
         if is_leaving:
@@ -218,10 +227,9 @@ class Services:
         return data(bytes(4), SPDP, 1, content)
 
     def _everybody(self) -> list[tuple[str, int]]:
-        base = PORTS.base + PORTS.domain * self.domain
         if not self.is_local:
-            return [(GROUP, base)]
-        ports = [base + PORTS.meta + PORTS.participant * index for index in range(MOST_PARTICIPANTS)]
+            return [(GROUP, self._base)]
+        ports = [self._base + PORTS.meta + PORTS.participant * index for index in range(MOST_PARTICIPANTS)]
         return [("127.0.0.1", port) for port in ports if port != self._meta_port]
 
     # ---- the loop
@@ -324,10 +332,10 @@ class Services:
         self.peers[each.prefix] = Peer(meta, user or meta, each.vendor, self._now_s() + max(lease_s, 1))
         if is_new:
             for builtin, writer in self._builtin.items():
-                reader = each.prefix + builtin[:3] + b"\xc7"
+                reader = each.prefix + reader_of(builtin)
                 writer.readers[reader] = 1
                 self._send(meta, each.prefix, *[made for _, made in writer.kept][:16], writer.heartbeat(reader))
-                self._send(meta, each.prefix, acknack(builtin, builtin[:3] + b"\xc7", 1, (), 1))
+                self._send(meta, each.prefix, acknack(builtin, reader_of(builtin), 1, (), 1))
             self._send(meta, each.prefix, self._announcement())
 
     def _forget(self, prefix: bytes) -> None:
@@ -359,7 +367,7 @@ class Services:
 
     def _heartbeat(self, each: Submessage) -> None:
         guid = each.prefix + each.writer
-        readers = [each.writer[:3] + b"\xc7"] if each.writer in self._builtin else [
+        readers = [reader_of(each.writer)] if each.writer in self._builtin else [
             server.reader for server in self.servers if guid in self._matched.get(server.reader, ())]
         if not readers:
             return
@@ -369,9 +377,13 @@ class Services:
                    if number not in state.ahead]
         if missing or not each.is_final:
             state.count += 1
-            peer = self.peers[each.prefix]
-            self._send(peer.meta if each.writer in self._builtin else peer.user, each.prefix,
+            self._send(self._addresses_of(each.prefix, each.writer), each.prefix,
                        *(acknack(each.writer, reader, state.next, missing, state.count) for reader in readers))
+
+    def _addresses_of(self, prefix: bytes, writer: bytes) -> list[tuple[str, int]]:
+        """Where a peer awaits what concerns a writer, its own or ours."""
+        peer = self.peers[prefix]
+        return peer.meta if writer in self._builtin else peer.user
 
     def _acknack(self, each: Submessage) -> None:
         guid = each.prefix + each.reader
@@ -382,10 +394,9 @@ class Services:
                 again = [kept[number] for number in each.numbers if number in kept]
                 gone = [number for number in each.numbers if number not in kept]
                 again += [gap(each.reader, writer.entity, gone[0], gone[-1] + 1)] if gone else []
-                peer = self.peers[each.prefix]
+                addresses = self._addresses_of(each.prefix, writer.entity)
                 for at in range(0, len(again), 8):
-                    self._send(peer.meta if writer.entity in self._builtin else peer.user, each.prefix,
-                               *again[at : at + 8], writer.heartbeat(guid))
+                    self._send(addresses, each.prefix, *again[at : at + 8], writer.heartbeat(guid))
 
     # ---- requests
 
@@ -395,7 +406,7 @@ class Services:
         if response is None:
             return 0
         client = each.related[:16] if each.related[:16].strip(b"\0") else each.prefix + each.writer
-        identity = client + struct.pack("<iI", each.first >> 32, each.first & 0xFFFFFFFF)
+        identity = client + number_bytes(each.first)
         made = server.writer.add(lambda number: data(bytes(4), server.writer.entity, number, response,
                                                      inline=identity_parameters(identity)))
         for reader in server.writer.readers:

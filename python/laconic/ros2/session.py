@@ -26,7 +26,7 @@ from laconic.ros2.messages import new
 from laconic.ros2.names import NANO, Middleware, Out, check_name, diagnostics, sent
 from laconic.ros2.node import RobotNode, Told
 from laconic.scene import Scene
-from laconic.scene.scene_text import lines_of
+from laconic.scene.scene_tables import lines_of
 from laconic.scene.table import read_toml
 
 HOUSEKEEPING_S = 0.02    # between looks for requests

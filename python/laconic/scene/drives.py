@@ -43,18 +43,21 @@ class Drives:
     numbers: dict[str, tuple[float, ...]] = field(default_factory=dict)  # by key, only those that are given
 
 
-def axes_with_motors(wheels: Sequence[Mapping[str, Any]], hinges: Sequence[Hinge]) -> list[bool]:
-    """Which wheels, and then which hinges, have a motor that a drive can replace."""
-    return [*(bool(wheel.get("driven", True)) for wheel in wheels),
-            *(hinge.kind in ("motor", "prescribed") for hinge in hinges)]
+def axes_with_motors(wheels: Sequence[Mapping[str, Any]], hinges: Sequence[Hinge], slips: bool) -> list[bool]:
+    """Which wheels, and then which hinges, have a motor that a drive can replace. Coordinated hinges turn together;
+    where wheels may slip each has a servo or motor of its own."""
+    turned = ("motor", "prescribed", "servo", *(["coordinated"] if slips else []))
+    return [*(bool(wheel.get("driven", True)) for wheel in wheels), *(hinge.kind in turned for hinge in hinges)]
 
 
-def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]], hinges: Sequence[Hinge] = ()) -> Drives:
-    """`[rig.drives]` of a vehicle with these wheels and hinges; a wheel with driven = false has no drive."""
+def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]], hinges: Sequence[Hinge] = (),
+                slips: bool = False) -> Drives:
+    """`[rig.drives]` of a vehicle with these wheels and hinges; a wheel with driven = false has no drive. `slips`: the
+    ground has friction."""
     if not wheels:
         table.fail("protocol", "drives turn wheels, and the vehicle has none; take [rig.drives] out")
     protocol = read_choice(table, "protocol")
-    driven, node_ids = _node_ids(table, axes_with_motors(wheels, hinges), len(wheels))
+    driven, node_ids = _node_ids(table, axes_with_motors(wheels, hinges, slips), len(wheels))
     numbers = {key: _numbers(table, key, driven) for key in NUMBERS if table.has(key)}
     watchdog_s = read_number(table, "watchdog_s")
     if watchdog_s is not None and watchdog_s > LONGEST_WATCHDOG_S:

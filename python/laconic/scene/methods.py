@@ -12,7 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from laconic.base.paths import SOURCE_DIR, built
-from laconic_fmu.method_list import Method, methods_in
+from laconic_fmu.field_list import Method, methods_in
 
 
 def _header() -> Path:

@@ -7,18 +7,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from laconic.base.paths import scene_path
 from laconic.core import REALS, Core, load
 from laconic.core.articulated import ArticulatedVehicle, max_bodies
-from laconic.core.given import shown
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
 from laconic.core.slipping import SlippingVehicle
-from laconic.errors import BadInput, Refused
+from laconic.errors import LONGEST_NAME, BadInput, Refused, cut, shown
 from laconic.scene.base import BaseTable, FrcTable
 from laconic.scene.drives import ArduPilotTable, Drives, SpeedController
 from laconic.scene.ground import slips
@@ -300,3 +302,34 @@ def with_found_step(scene: Scene) -> Scene:
     """The scene itself, or where its step is "auto" with the step that keeps its tolerance."""
     tolerance = scene.run.tolerance
     return scene if tolerance is None else scene.with_step(chosen_step_s(scene, tolerance))
+
+
+# ---- A scene from tables in a program instead of a file.
+
+def build_scene(tables: Mapping[str, Any]) -> Scene:
+    """A scene from the tables that a scene file has (docs/scenes.md), as mappings and lists.
+
+    `tables` needs "vehicle" and "run"; "name", "ground", "initial", "input", "outputs" … are as in a file, angles in
+    rad or with `_deg` at the key's end; arrays stand for lists. Raises BadInput as `read_scene` does: it names the key.
+    """
+    if not isinstance(tables, Mapping):
+        raise BadInput(f"scene: {shown(tables)} is no mapping; give the tables of a scene, such as {{\"vehicle\": …}}")
+    given = tables.get("name")
+    name = given[:LONGEST_NAME] if isinstance(given, str) and given else "scene"
+    try:
+        values = _values(tables)
+    except RecursionError:
+        raise BadInput(f"{cut(name)}: nests its tables too deeply, or one in itself; give those of a scene"
+                       ) from None
+    return scene_of(Table(Path(name.replace("/", "-")), "", values))
+
+
+def _values(given: Any) -> Any:
+    """What a TOML file could hold of it: dicts, lists, numbers, texts."""
+    if isinstance(given, Mapping):
+        return {str(key): _values(value) for key, value in given.items()}
+    if isinstance(given, np.ndarray):
+        return _values(given.tolist())
+    if isinstance(given, list | tuple):
+        return [_values(value) for value in given]
+    return plain(given)

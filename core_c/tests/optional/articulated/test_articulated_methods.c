@@ -177,6 +177,43 @@ static void auto_meets_stiff_vehicles_at_1_and_10_ms(void) {
     TEST_ASSERT_TRUE(error_of_auto(motor, &in, 0.5, 0.01) < EITHER(1e-7, 1e-2));
 }
 
+/* ψ is the integral of its rate, which is a cubic through values and accelerations. */
+static void every_method_turns_a_prescribed_hinge_by_the_integral_of_its_rate(void) {
+    const laconic_articulated_model m = hinged_model(tricycle(LACONIC_HINGE_PRESCRIBED));
+    laconic_articulated_input a = nothing(), b = nothing();
+    const laconic_articulated_start start = start_at(0.5, 0, 0);
+    a.hinge_rate_rad_per_s[0] = REAL(0.3);
+    b.hinge_rate_rad_per_s[0] = REAL(0.7);
+    a.hinge_acceleration_rad_per_s2[0] = 4;
+    b.hinge_acceleration_rad_per_s2[0] = -2;
+    for (int method = 0; method < LACONIC_ARTICULATED_METHOD_COUNT; method++) {
+        laconic_articulated_state s = hinged_state(&m, &start, &a);
+        const laconic_articulated_integrator i = hinged_integrator(&m, method, 0.1);
+        ASSERT_TAKEN(laconic_articulated_step(&m, &i, &s, &a, &b, &refusal));
+        ASSERT_NEAR(EITHER(1e-15, 1e-6), 0.05 * (0.3 + 0.7) + 0.01 / 12 * (4 - -2),
+                    motion_of(&m, &s).hinge_angle_rad[0]);
+    }
+}
+
+/* Without damping and on a short trail auto judges by energy where nothing acts, else by its rates. */
+static void auto_meets_an_undamped_short_trail_under_every_kind_of_input(void) {
+    laconic_articulated_vehicle v = carriage(20, 0.8, 0, 0);
+    hang_wheel(&v, 0, 0, 0.2, 0);
+    hang_wheel(&v, 0, 0, -0.2, 0);
+    hang_body(&v, 0, LACONIC_HINGE_FREE, 0.3, 0, 1, 0.01, 0, 0);
+    hang_wheel(&v, 1, -0.01, 0, 0);
+    hang_body(&v, 0, LACONIC_HINGE_PRESCRIBED, -0.3, 0, 1, 0.01, 0.1, 0);
+    for (int kind = 0; kind < 8; kind++) {
+        laconic_articulated_input in = nothing();
+        laconic_real *const numbers[] = {&in.base.body_force_N[0],   &in.base.body_force_N[1],
+                                         &in.base.body_moment_Nm,    &in.base.world_force_N[1],
+                                         &in.hinge_torque_Nm[0],     &in.hinge_rate_rad_per_s[1],
+                                         &in.base.axle_torque_Nm[0], &in.base.voltage_V[0]};
+        *numbers[kind] = REAL(0.4);
+        TEST_ASSERT_TRUE(error_of_auto(v, &in, 0.5, 0.01) < EITHER(1e-5, 1e-2));
+    }
+}
+
 /* Decay of 10⁶ 1/s against a step of 10 ms. */
 static void auto_takes_damping_of_any_rate(void) {
     laconic_articulated_vehicle v = tricycle(LACONIC_HINGE_MOTOR);
@@ -234,6 +271,8 @@ int main(void) {
     RUN_TEST(moebius_4_follows_springs_of_any_stiffness);
     RUN_TEST(moebius_4_keeps_the_steady_speed_of_stiff_motors);
     RUN_TEST(auto_meets_stiff_vehicles_at_1_and_10_ms);
+    RUN_TEST(every_method_turns_a_prescribed_hinge_by_the_integral_of_its_rate);
+    RUN_TEST(auto_meets_an_undamped_short_trail_under_every_kind_of_input);
     RUN_TEST(auto_takes_damping_of_any_rate);
     RUN_TEST(rk4_refuses_a_caster_that_is_too_fast_with_the_largest_step);
     RUN_TEST(explicit_methods_refuse_a_yaw_too_fast_for_the_step);

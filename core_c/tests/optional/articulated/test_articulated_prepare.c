@@ -80,6 +80,10 @@ static void numbers_are_checked_body_by_body(void) {
     v = with_two_casters();
     v.body[0].stiffness_Nm = -2;
     assert_named(LACONIC_NEGATIVE, OF(HINGE_STIFFNESS), 1, &v, "vehicle.body[1].stiffness_Nm", "above");
+    v = with_two_casters();
+    v.body[1].rest_rad = REAL(EITHER(1e13, 1e6)); /* of whose sine not one digit would be right */
+    assert_named(LACONIC_OVERFLOW, OF(HINGE_REST), 2, &v, "vehicle.body[2].rest_rad", "");
+    TEST_ASSERT_TRUE(why.limit > 0 && why.limit < v.body[1].rest_rad);
 }
 
 static void bodies_and_hinges_must_exist(void) {
@@ -93,9 +97,13 @@ static void bodies_and_hinges_must_exist(void) {
     assert_named(LACONIC_HINGE_NOT_SET, OF(BODY_HINGE), 2, &v, "vehicle.body[2].hinge", "give its kind");
     v.body[1].hinge = (laconic_hinge_kind)7;
     assert_named(LACONIC_HINGE_KIND_UNKNOWN, OF(BODY_HINGE), 2, &v, "vehicle.body[2].hinge: 7", "1 (free)");
+    v.body[1].hinge = (laconic_hinge_kind)-1;
+    assert_named(LACONIC_HINGE_KIND_UNKNOWN, OF(BODY_HINGE), 2, &v, "vehicle.body[2].hinge: -1", "1 (free)");
     v = with_two_casters();
     v.wheel_body[3] = 3;
     assert_named(LACONIC_BODY_UNKNOWN, OF(WHEEL_BODY), 4, &v, "vehicle.wheel[4].body: 3", "to 2");
+    v.wheel_body[3] = -1;
+    assert_named(LACONIC_BODY_UNKNOWN, OF(WHEEL_BODY), 4, &v, "vehicle.wheel[4].body: -1", "to 2");
 }
 
 static void a_parent_comes_before_its_body(void) {
@@ -194,6 +202,10 @@ static void friction_is_refused(void) {
     v.base.drive.winding_resistance_ohm = 1;
     assert_named(LACONIC_FRICTION_WITH_HINGES, LACONIC_FIELD_SUPPLY_VOLTAGE, 0, &v, "vehicle.drive.supply_V", "");
     v = with_two_casters();
+    v.base.drive.current_limit_A = 3;
+    v.base.drive.winding_resistance_ohm = 1;
+    assert_named(LACONIC_FRICTION_WITH_HINGES, LACONIC_FIELD_CURRENT_LIMIT, 0, &v, "vehicle.drive.current_limit_A", "");
+    v = with_two_casters();
     v.base.wheel[1].motor_circuit = LACONIC_MOTOR_OPEN;
     assert_named(LACONIC_FRICTION_WITH_HINGES, LACONIC_FIELD_MOTOR_CIRCUIT, 2, &v, "vehicle.wheel[2]", "");
 }
@@ -206,6 +218,9 @@ static void methods_have_names_and_refuse_bad_steps(void) {
         TEST_ASSERT_EQUAL_INT(k, laconic_articulated_method_by_name(laconic_articulated_method_name(k)));
     TEST_ASSERT_EQUAL_INT(-1, laconic_articulated_method_by_name("euler"));
     TEST_ASSERT_EQUAL_STRING("", laconic_articulated_method_name(-1));
+    TEST_ASSERT_EQUAL_STRING("", laconic_articulated_method_name(LACONIC_ARTICULATED_METHOD_COUNT));
+    ASSERT_STATUS(LACONIC_METHOD_UNKNOWN, laconic_articulated_integrator_prepare(&in, -1, &m, REAL(0.01), &why));
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_articulated_integrator_prepare(&in, 0, &m, LACONIC_REAL_MIN, &why));
     ASSERT_STATUS(LACONIC_METHOD_UNKNOWN, laconic_articulated_integrator_prepare(&in, 4, &m, REAL(0.01), &why));
     char text[200];
     laconic_message(&why, text, sizeof text);

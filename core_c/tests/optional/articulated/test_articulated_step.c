@@ -37,6 +37,41 @@ static void starts_are_checked(void) {
     start = start_at(EITHER(1e100, 1e30), 0, 0);
     ASSERT_STATUS(LACONIC_OVERFLOW, laconic_articulated_state_set(&s, NULL, &m, &start, &in, &why));
     TEST_ASSERT_EQUAL_MEMORY(&before, &s, sizeof s);
+    start = start_at(EITHER(1e18, 3e9), 0, 0); /* an angle could count it, and in single precision η could not */
+    TEST_ASSERT_EQUAL(IN_DOUBLE, laconic_articulated_state_set(&s, NULL, &m, &start, &in, &why) == LACONIC_OK);
+}
+
+/* A jump to such a rate would throw the carriage out of every range. */
+static void a_rate_that_jumps_beyond_the_range_is_refused(void) {
+    laconic_articulated_vehicle v = free_carriage();
+    hang_body(&v, 0, LACONIC_HINGE_PRESCRIBED, -0.25, 0.03, 10, 0.4, -0.3, 0.02);
+    const laconic_articulated_model m = hinged_model(v);
+    const laconic_articulated_start start = start_at(0.3, 0, 0);
+    laconic_articulated_input in = nothing();
+    laconic_articulated_state s = hinged_state(&m, &start, &in);
+    const laconic_articulated_state before = s;
+    in.hinge_rate_rad_per_s[0] = REAL(EITHER(1e90, 1e15));
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_articulated_jump(&m, &s, &in, &why));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &s, sizeof s);
+}
+
+/* As after more turns than a heading counts. */
+static void a_hinge_that_has_turned_too_often_is_refused(void) {
+    const laconic_articulated_model m = hinged_model(with_two_casters());
+    const laconic_articulated_start start = start_at(0.3, 0, 0);
+    const laconic_articulated_input in = nothing();
+    laconic_articulated_state s = hinged_state(&m, &start, &in);
+    s.hinge[1].turns = INT64_MAX;
+    const laconic_articulated_state before = s;
+    for (int method = 0; method < LACONIC_ARTICULATED_METHOD_COUNT; method++) {
+        const laconic_articulated_integrator i = hinged_integrator(&m, method, 0.01);
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_articulated_step(&m, &i, &s, &in, &in, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &s, sizeof s);
+    }
+    s.hinge[1].turns = 0;
+    s.heading.turns = INT64_MAX;
+    const laconic_articulated_integrator i = hinged_integrator(&m, LACONIC_ARTICULATED_RK4, 0.01);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_articulated_step(&m, &i, &s, &in, &in, &why));
 }
 
 static void every_number_of_an_input_is_named_where_it_is_not_finite(void) {
@@ -163,6 +198,26 @@ static void a_twist_without_direction_is_refused(void) {
     ASSERT_TAKEN(laconic_articulated_state_set(&s, NULL, &m, &start, &in, &refusal));
 }
 
+/* From 1.25 down to 0.25 in the middle of the step and up again: there the first module's hinge would stand still. */
+static void a_twist_that_vanishes_within_a_step_is_refused_by_every_method(void) {
+    const laconic_articulated_model m = hinged_model(swerve(LACONIC_HINGE_COORDINATED, 4));
+    const laconic_articulated_start start = start_at(0.3, 0, 0);
+    for (int of_hinge = 0; of_hinge < 2; of_hinge++) {
+        laconic_articulated_input a = of_hinge ? twist_of(1.25, -0.3, 1) : twist_of(1, 0, 0), b;
+        a.twist_rate[0] = -8;
+        b = a;
+        b.twist_rate[0] = 8;
+        laconic_articulated_state s = hinged_state(&m, &start, &a);
+        const laconic_articulated_state before = s;
+        for (int method = 0; method < LACONIC_ARTICULATED_METHOD_COUNT; method++) {
+            const laconic_articulated_integrator i = hinged_integrator(&m, method, 0.5);
+            ASSERT_STATUS(LACONIC_TWIST_ZERO, laconic_articulated_step(&m, &i, &s, &a, &b, &why));
+            TEST_ASSERT_EQUAL(of_hinge ? OF(BODY_HINGE) : OF(TWIST), why.field);
+            TEST_ASSERT_EQUAL_MEMORY(&before, &s, sizeof s);
+        }
+    }
+}
+
 static void a_twist_that_jumps_is_refused(void) {
     const laconic_articulated_model m = hinged_model(swerve(LACONIC_HINGE_COORDINATED, 4));
     const laconic_articulated_start start = start_at(0.3, 0, 0);
@@ -285,11 +340,14 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_start_is_projected_and_says_by_how_much);
     RUN_TEST(starts_are_checked);
+    RUN_TEST(a_rate_that_jumps_beyond_the_range_is_refused);
+    RUN_TEST(a_hinge_that_has_turned_too_often_is_refused);
     RUN_TEST(every_number_of_an_input_is_named_where_it_is_not_finite);
     RUN_TEST(huge_inputs_are_refused_and_leave_the_state);
     RUN_TEST(a_swerve_that_nobody_coordinates_names_two_wheels);
     RUN_TEST(parallel_ackermann_wheels_disagree);
     RUN_TEST(a_twist_without_direction_is_refused);
+    RUN_TEST(a_twist_that_vanishes_within_a_step_is_refused_by_every_method);
     RUN_TEST(a_twist_that_jumps_is_refused);
     RUN_TEST(a_twist_that_makes_the_rear_axle_slide_is_refused);
     RUN_TEST(coordinated_wheels_turn_a_car_on_the_middle_of_its_axle);

@@ -47,6 +47,8 @@ static void numbers_without_effect_on_their_hinge_are_refused(void) {
     v.hinged.body[0].hinge = LACONIC_HINGE_PRESCRIBED;
     v.hinge[0].stop_high_rad = 1;
     assert_prepare_refuses(v, LACONIC_NO_EFFECT_ON_HINGE, FIELD(HINGE_STOP_HIGH), 1, "vehicle.body[1].stop_high_rad");
+    v.hinge[0].stop_low_rad = -1;
+    assert_prepare_refuses(v, LACONIC_NO_EFFECT_ON_HINGE, FIELD(HINGE_STOP_LOW), 1, "vehicle.body[1].stop_low_rad");
     v = tree_casters();
     v.hinge[1].control_period_s = REAL(0.01);
     assert_prepare_refuses(v, LACONIC_NO_EFFECT_ON_HINGE, FIELD(CONTROL_PERIOD), 2, "vehicle.body[2].control_period_s");
@@ -91,6 +93,13 @@ static void every_number_of_hinges_and_wheels_is_checked(void) {
     assert_prepare_refuses(v, LACONIC_BODY_UNKNOWN, FIELD(BODY_PARENT), 1, "vehicle.body[1].parent");
 }
 
+/* Each number is usable by itself, and their sum is not. */
+static void numbers_that_leave_the_range_together_are_refused(void) {
+    laconic_tree_vehicle v = tree_casters();
+    v.hinged.body[0].hinge_x_m = v.hinged.body[1].hinge_x_m = REAL(EITHER(1.2e154, 1.7e19));
+    assert_prepare_refuses(v, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, "");
+}
+
 static void a_massless_body_is_refused_unless_its_rate_is_prescribed(void) {
     laconic_tree_vehicle v = tree_casters();
     v.hinged.body[1].mass_kg = v.hinged.body[1].yaw_inertia_kgm2 = 0;
@@ -111,6 +120,13 @@ static void a_start_beyond_a_stop_is_refused(void) {
     start.hinged.hinge_angle_rad[0] = REAL(-0.8);
     ASSERT_STATUS(LACONIC_BELOW_LIMIT, laconic_tree_state_set(&s, &m, &start, &refusal));
     start.hinged.hinge_angle_rad[0] = 0;
+    start.hinged.yaw_rate_rad_per_s = REAL(EITHER(1e18, 1e7)); /* of a body whose hinge is far out */
+    laconic_tree_vehicle far_out = tree_casters();
+    far_out.hinged.body[0].hinge_x_m = REAL(EITHER(1e150, 1e17));
+    const laconic_tree_model too_large = tree_model(far_out);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_tree_state_set(&s, &too_large, &start, &refusal));
+    TEST_ASSERT_EQUAL(FIELD(START_VELOCITY), refusal.field);
+    start.hinged.yaw_rate_rad_per_s = 0;
     start.hinged.velocity_m_per_s[1] = INFINITE;
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_state_set(&s, &m, &start, &refusal));
     TEST_ASSERT_EQUAL(FIELD(START_VELOCITY), refusal.field);
@@ -146,6 +162,54 @@ static void a_trailer_rests_on_its_axle_and_the_hitch(void) {
     ASSERT_NEAR(EITHER(1e-8, 0.1), axle / 2, s.normal_N[5]);
     ASSERT_NEAR(EITHER(1e-8, 0.1), front / 2, s.normal_N[0]);
     ASSERT_NEAR(EITHER(1e-8, 0.1), (all - front) / 2, s.normal_N[2]);
+}
+
+/* 12 kg with the centre of mass 5 cm ahead of the axle and 20 cm behind a ball. */
+static void a_support_carries_as_a_wheel_does(void) {
+    laconic_tree_vehicle v = tree_carriage(12, 0.4, 0.6);
+    v.hinged.base.com_x_m = REAL(0.05);
+    for (int side = 1; side >= -1; side -= 2) drive_wheel(tree_wheel(&v, 0, 0, 0.2 * side, 0.08, 0.02, 0.05), 0.4, 0.3);
+    v.hinged.base.support_count = 1;
+    v.hinged.base.support[0].x_m = REAL(0.25);
+    const laconic_tree_model m = tree_model(v);
+    const laconic_tree_start start = tree_start_at(0, 0, 0);
+    const laconic_tree_state s = tree_state(&m, &start);
+    ASSERT_NEAR(EITHER(1e-10, 1e-4), 12 * g / 5, s.normal_N[2]);
+    for (int i = 0; i < 2; i++) ASSERT_NEAR(EITHER(1e-10, 1e-4), 12 * g * 2 / 5, s.normal_N[i]);
+}
+
+/* Three axles at 0.5, 0 and −0.5 m, the weight 0.4 m ahead: of least norm the last would pull. */
+static void the_axles_that_are_left_carry_all_where_one_lifts(void) {
+    laconic_tree_vehicle v = tree_carriage(30, 2, 0.8);
+    v.hinged.base.com_x_m = REAL(0.4);
+    for (int k = 0; k < 6; k++) tree_wheel(&v, 0, 0.5 - k / 2 * 0.5, k % 2 == 0 ? 0.2 : -0.2, 0.05, 0.004, 0.05);
+    const laconic_tree_model m = tree_model(v);
+    const laconic_tree_start start = tree_start_at(0, 0, 0);
+    const laconic_tree_state s = tree_state(&m, &start);
+    for (int k = 0; k < 2; k++) {
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), 0.4 * 30 * g, s.normal_N[k]);
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), 0.1 * 30 * g, s.normal_N[2 + k]);
+        TEST_ASSERT_TRUE(s.normal_N[4 + k] < 0);
+        TEST_ASSERT_EQUAL(2, tree_outputs(&m, &s).contact_state[4 + k]);
+    }
+}
+
+/* The turntable carries pitch, so that trailer and turntable are one group behind the hitch. */
+static void a_turntable_of_a_trailer_belongs_to_its_group(void) {
+    laconic_tree_vehicle v = tree_trailer(0.8);
+    const int b = tree_body(&v, 1, -1, 0, 100, 20, 0, 0);
+    for (int side = 1; side >= -1; side -= 2) tree_wheel(&v, b, 0, 0.75 * side, 0.3, 1.2, 2);
+    const laconic_tree_model m = tree_model(v);
+    const laconic_tree_start start = tree_start_at(0, 0, 0);
+    const laconic_tree_state s = tree_state(&m, &start);
+    double sum = 0, car = 0;
+    for (int i = 0; i < 8; i++) sum += (double)s.normal_N[i];
+    for (int i = 0; i < 4; i++) car += (double)s.normal_N[i] - 1400 * g / 4;
+    ASSERT_NEAR(EITHER(1e-8, 0.1), 2500 * g, sum);
+    double moment = 1000 * g * -3 + 100 * g * -1; /* about the hitch, of which its force has none */
+    for (int i = 4; i < 8; i++) moment -= (double)s.normal_N[i] * (i < 6 ? -3.2 : -1);
+    ASSERT_NEAR(EITHER(1e-7, 0.5), 0, moment);
+    TEST_ASSERT_TRUE(car < 1000 * g - 1); /* the hitch carries a part at most */
 }
 
 /* A pivot that carries pitch makes car and trailer one rigid body on three axles: the least-norm loads then differ. */
@@ -304,10 +368,14 @@ int main(void) {
     RUN_TEST(a_limit_without_what_it_limits_is_refused);
     RUN_TEST(stops_in_the_wrong_order_are_refused);
     RUN_TEST(every_number_of_hinges_and_wheels_is_checked);
+    RUN_TEST(numbers_that_leave_the_range_together_are_refused);
     RUN_TEST(a_massless_body_is_refused_unless_its_rate_is_prescribed);
     RUN_TEST(a_start_beyond_a_stop_is_refused);
     RUN_TEST(loads_follow_casters_as_they_swivel);
     RUN_TEST(a_trailer_rests_on_its_axle_and_the_hitch);
+    RUN_TEST(a_support_carries_as_a_wheel_does);
+    RUN_TEST(the_axles_that_are_left_carry_all_where_one_lifts);
+    RUN_TEST(a_turntable_of_a_trailer_belongs_to_its_group);
     RUN_TEST(a_hinge_that_carries_pitch_shares_loads);
     RUN_TEST(braking_shifts_the_load_and_a_wheel_that_would_pull_lifts);
     RUN_TEST(without_hinges_it_is_the_friction_step_of_rigid_vehicles);

@@ -1,4 +1,5 @@
-/* Tests of batch.c: shapes, kinds, memory, and the order of lanes. */
+/* Tests of batch.c: shapes, kinds, memory, the order of lanes; of batch_articulated.c: lanes with hinges. */
+#include "../articulated_friction/slipping_trees.h"
 #include "population.h"
 
 static population all;
@@ -130,6 +131,66 @@ static void a_kind_that_is_stepped_in_another_way_is_not_renewed(void) {
     TEST_ASSERT_TRUE(laconic_batch_renew(&batch, 22));
 }
 
+/* -------------------------------------------------------------------------- vehicles with hinges -- */
+
+enum { HINGED_LANES = 4 };
+
+/* Lanes 0 and 2 roll, 1 and 3 slip; lane 2 has a motion that no step can go on with. */
+static void lanes_with_hinges_have_the_bits_of_single_steps_and_stop_alone(void) {
+    const laconic_articulated_model rolling = hinged_model(with_two_casters());
+    const laconic_tree_model slipping = tree_model(tree_casters());
+    laconic_articulated_kind kinds[2];
+    static const int32_t kind_of_lane[HINGED_LANES] = {0, 1, 0, 1};
+    laconic_articulated_state states[HINGED_LANES];
+    laconic_tree_state trees[HINGED_LANES];
+    laconic_articulated_input inputs[HINGED_LANES];
+    laconic_tree_input tree_inputs[HINGED_LANES];
+    laconic_refusal whys[HINGED_LANES];
+    int32_t status[HINGED_LANES];
+    uint64_t missed[HINGED_LANES] = {0, 0, 0, 5};
+    const laconic_articulated_start start = start_at(0.4, 0, 0.1);
+    const laconic_tree_start tree_start = tree_start_at(0.4, 0, 0.1);
+    memset(kinds, 0, sizeof kinds);
+    kinds[0].model = &rolling;
+    kinds[0].integrator = hinged_integrator(&rolling, LACONIC_ARTICULATED_AUTO, 0.01);
+    kinds[1].tree = &slipping;
+    kinds[1].tree_step_s = REAL(0.002);
+    for (int k = 0; k < HINGED_LANES; k++) {
+        inputs[k] = nothing();
+        tree_inputs[k] = tree_nothing();
+        inputs[k].base.voltage_V[0] = tree_inputs[k].hinged.base.voltage_V[0] = REAL(2 + k);
+        states[k] = hinged_state(&rolling, &start, &inputs[k]);
+        trees[k] = tree_state(&slipping, &tree_start);
+    }
+    states[2].heading.turns = INT64_MAX;
+    laconic_articulated_state state = states[0];
+    laconic_tree_state tree = trees[3];
+    const laconic_articulated_state stuck = states[2];
+    laconic_articulated_batch batch = {kinds, kind_of_lane, states, inputs, trees, tree_inputs, whys, status, missed};
+    TEST_ASSERT_EQUAL_INT32(0, laconic_articulated_batch_run(&batch, 0, 2, 7));
+    TEST_ASSERT_EQUAL_INT32(1, laconic_articulated_batch_run(&batch, 2, 2, 7));
+    for (int k = 0; k < 7; k++)
+        ASSERT_TAKEN(
+            laconic_articulated_step(&rolling, &kinds[0].integrator, &state, &inputs[0], &inputs[0], &refusal));
+    tree_run(&slipping, &tree, &tree_inputs[3], 0.002, 7);
+    TEST_ASSERT_EQUAL_MEMORY(&state, &states[0], sizeof state);
+    TEST_ASSERT_EQUAL_MEMORY(&tree, &trees[3], sizeof tree);
+    TEST_ASSERT_EQUAL_MEMORY(&stuck, &states[2], sizeof stuck);
+    TEST_ASSERT_EQUAL_INT32(LACONIC_OVERFLOW, status[2]);
+    ASSERT_STATUS(LACONIC_OVERFLOW, whys[2].status);
+    TEST_ASSERT_EQUAL_UINT64(7, missed[2]);
+    TEST_ASSERT_EQUAL_UINT64(5, missed[3]);
+    laconic_articulated_motion motions[2];
+    laconic_articulated_batch_observe(&batch, 0, 2, motions);
+    TEST_ASSERT_TRUE(motions[0].x_m == motion_of(&rolling, &state).x_m && motions[0].x_m != 0);
+    TEST_ASSERT_TRUE(motions[1].x_m == tree_outputs(&slipping, &trees[1]).motion.x_m && motions[1].x_m != 0);
+    laconic_tree_outputs outputs;
+    laconic_articulated_batch_outputs(&batch, 3, 1, &outputs);
+    const laconic_tree_outputs wanted = tree_outputs(&slipping, &tree);
+    TEST_ASSERT_EQUAL_MEMORY(wanted.normal_N, outputs.normal_N, 4 * sizeof outputs.normal_N[0]);
+    TEST_ASSERT_TRUE(outputs.motor_loss_J == wanted.motor_loss_J && wanted.motor_loss_J > 0);
+}
+
 int main(void) {
     all.random = 20;
     UNITY_BEGIN();
@@ -140,5 +201,6 @@ int main(void) {
     RUN_TEST(lanes_keep_their_places_whatever_the_order_of_blocks);
     RUN_TEST(a_lane_whose_kind_changed_steps_as_the_new_one);
     RUN_TEST(a_kind_that_is_stepped_in_another_way_is_not_renewed);
+    RUN_TEST(lanes_with_hinges_have_the_bits_of_single_steps_and_stop_alone);
     return UNITY_END();
 }

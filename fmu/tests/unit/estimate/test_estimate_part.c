@@ -1,6 +1,6 @@
 /* Tests of estimate_part.c: the error that the FMU shows is that of the core's estimate beside the same plant, through
  * changes, slopes, sensors and refusals; and the bits of the motion stay. */
-#include "estimate_part.h"
+#include "parts.h"
 #include "saved_bench.h"
 
 void setUp(void) { begin_test(fmi2CoSimulation); }

@@ -36,7 +36,18 @@ static void fill_settings(laconic_sensor_settings *settings) {
     }
 }
 
+/* Compares of bytes see gaps between members, too, which a start may leave as the stack had them. */
+static void clear_gaps(laconic_encoder_settings settings[LACONIC_MAX_WHEELS]) {
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        const laconic_encoder_settings kept = settings[i];
+        memset(&settings[i], 0, sizeof settings[i]);
+        settings[i].counts_per_turn = kept.counts_per_turn;
+        settings[i].gear_ratio = kept.gear_ratio;
+    }
+}
+
 static void fill_sensors(laconic_sensors *sensors) {
+    clear_gaps(sensors->settings.encoder);
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
         sensors->encoder[i].count = -5000000000 - i;
         FILL(sensors->encoder[i].rest);

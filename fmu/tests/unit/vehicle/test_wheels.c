@@ -1,7 +1,7 @@
 /* Tests of wheels as the parts of the vehicle see them: as many as there are, within limits, with sensors. */
 #include "fmi2_bench.h"
-#include "friction_part.h"
 #include "model_interface.h"
+#include "parts.h"
 
 void setUp(void) { begin_test(fmi2CoSimulation); }
 void tearDown(void) { end_test(); }

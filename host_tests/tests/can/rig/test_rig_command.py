@@ -232,7 +232,7 @@ def cpu_rate(run_steps: object, steps: int) -> float:
     return best
 
 
-def undisturbed_rate(run_steps: object, window: int = 100) -> float:
+def undisturbed_rate(run_steps: object, window: int = 20) -> float:
     """Steps a second over the fastest stretch: between two processes it is waiting that counts, as long as no other
     work takes their turn; a line that collects small packets would slow every stretch."""
     marks = []

@@ -16,8 +16,7 @@ from laconic.core import load
 from laconic.fmu import DESCRIPTION
 from laconic.scene.methods import METHODS, ROWS, method_with
 from laconic_fmu.description import parse, token_in, token_of
-from laconic_fmu.field_list import rows_in
-from laconic_fmu.method_list import methods_in
+from laconic_fmu.field_list import methods_in, rows_in
 
 LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "methods.h"
 TEXT = LIST.read_text(encoding="utf-8")

@@ -164,7 +164,7 @@ def test_a_wheel_is_known_by_what_it_holds(tmp_path):
         shutil.copytree(SOURCE_DIR / folder, tmp_path / "laconic" / "_built" / "sources" / folder)
     done = installed_alone(tmp_path, "simulate", "s1")
     assert done.returncode == 2
-    assert done.stderr.startswith("laconic: lib/laconic_cdef_double.h: is not in the wheel for this system; get the ")
+    assert done.stderr.startswith("laconic: lib/laconic_cdef_double.py: is not in the wheel for this system; get the ")
 
 
 @pytest.mark.parametrize("module, extra", [("can", "rig"), ("cantools", "rig"), ("serial", "rig"), ("e2e", "rig"),

@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 import laconic
 from laconic.core import load
 from laconic.pictures import plotting
-from laconic.pictures.curve_style import METHOD_STYLES, style_of
-from laconic.pictures.curves import MOST_CURVES, share_zero, stripes
+from laconic.pictures.curves import METHOD_STYLES, MOST_CURVES, share_zero, stripes, style_of
 from laconic.pictures.plotting import figure, simulation_picture
 from laconic.scene import METHODS, read_scene
 from laconic.scene.methods import EXACT_4, EXPLICIT

@@ -17,7 +17,7 @@ from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.robot.identify.report import interval
 from laconic.robot.replay.rolling import path_of
-from laconic.scene.scene_text import rewritten
+from laconic.scene.scene_tables import rewritten
 from laconic.scene.table import entries_of
 from recorded_data import recorded
 

@@ -295,7 +295,7 @@ def test_a_missing_package_is_named_with_its_extra(tmp_path, capsys, monkeypatch
     monkeypatch.setitem(sys.modules, "rosbags", None)
     from laconic.robot.bags.messages import _store_of
     _store_of.cache_clear()
-    monkeypatch.setattr("laconic.base.extras.requires", lambda _: ['rosbags>=0.10; extra == "bags"'])
+    monkeypatch.setattr("importlib.metadata.requires", lambda _: ['rosbags>=0.10; extra == "bags"'])
     assert 'pip install "laconic[bags]"' in refused(capsys, log, scene_of(tmp_path))
 
 

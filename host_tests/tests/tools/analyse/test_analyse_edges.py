@@ -10,7 +10,7 @@ import pytest
 from matplotlib import pyplot as plt
 
 from laconic.cli import main as cli
-from laconic.pictures.curve_style import wrapped
+from laconic.pictures.curves import wrapped
 from laconic.pictures.plotting import figure, save
 from laconic.scene import read_scene
 from laconic.tools.analyse.analyse import analyse, study

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
-from laconic.pictures.curve_style import alternating_markers, nested, wrapped
+from laconic.pictures.curves import alternating_markers, nested, wrapped
 from laconic.scene import read_scene
 from laconic.tools.analyse.analyse import study
 from laconic.tools.analyse.findings import StudyOptions

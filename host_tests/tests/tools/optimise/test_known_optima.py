@@ -7,9 +7,9 @@ import pytest
 
 from laconic.scene.scene_tables import SceneTables, scene_tables
 from laconic.simulation import simulate
+from laconic.tools.measures import measure_named
 from laconic.tools.measures.arguments import split, with_arguments
 from laconic.tools.measures.measure import Measure
-from laconic.tools.measures.registry import measure_named
 from laconic.tools.optimise.candidates import Candidates
 from laconic.tools.optimise.gradient import RunGradient
 from laconic.tools.optimise.measuring import problem_of

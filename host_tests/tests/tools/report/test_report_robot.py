@@ -15,7 +15,7 @@ import friction_scenes
 from laconic.base.paths import SCENE_DIR
 from laconic.cli import main as cli
 from laconic.errors import Refused
-from laconic.pictures.curve_style import METHOD_STYLES
+from laconic.pictures.curves import METHOD_STYLES
 from laconic.scene import METHODS, read_scene
 from laconic.scene.methods import EXACT, EXACT_4, EXPLICIT, EXPLICIT_8
 from laconic.tools.report import accuracy, pictures, robot
@@ -44,7 +44,7 @@ def made(tmp_path_factory):
         patch.setattr(robot, "QUICK_FACTORS", (0.1, 1.0))
         patch.setattr("laconic.cli.commands.report.read_scene", lambda name: read_scene(name).with_run(duration_s=1.0))
         patch.setattr("laconic.tools.report.stability.SEGMENTS", 1)
-        patch.setattr("laconic.tools.report.robot_sections.mapped", lambda rows: ["auto"])
+        patch.setattr("laconic.tools.report.robot.mapped", lambda rows: ["auto"])
         for drawing in ("pictures", "plan"):
             patch.setattr(f"laconic.tools.report.{drawing}.svg", without_layout)
         with contextlib.redirect_stdout(io.StringIO()) as out:

@@ -30,7 +30,7 @@ from laconic.tools.report.boards import board_row
 from laconic.tools.report.counting import host_state
 from laconic.tools.report.workshop import HOST, M4F, Variant, Workshop, run_tool
 from laconic.tools.trim import needs_of, trimmed
-from laconic.tools.trim.c_tables import initializer
+from laconic.tools.trim.scene_files import initializer
 
 needs_gcc = pytest.mark.skipif(not HOST.present, reason="no gcc here")
 needs_board = pytest.mark.skipif(not M4F.present, reason="no arm-none-eabi-gcc or qemu-system-arm here")

@@ -6,9 +6,8 @@ from functools import cache
 from typing import Any
 
 import can
-from cffi import FFI
 
-from laconic.base.paths import built, library
+from laconic.base.paths import declarations, library
 from laconic.can.rig.wire import ID_BASE, FrameBox
 
 
@@ -16,9 +15,7 @@ class NodeLibrary:
     """The C functions of one scalar type."""
 
     def __init__(self, real: str):
-        self.real, self.ffi = real, FFI()
-        declarations = built("lib/laconic_node_cdef.h").read_text(encoding="utf-8")
-        self.ffi.cdef(without_inline_functions(declarations))
+        self.real, self.ffi = real, declarations("laconic_node_cdef")
         self.lib: Any = self.ffi.dlopen(str(library(f"laconic_node_{real}")))
 
     def protect_plain(self, offset: int, data: bytearray, counter: int) -> None:
@@ -40,17 +37,6 @@ class NodeLibrary:
     def receiver(self) -> Any:
         """A fresh laconic_e2e_receiver."""
         return self.ffi.new("laconic_e2e_receiver *")
-
-
-def without_inline_functions(text: str) -> str:
-    """cffi reads declarations only: `static inline` functions of the headers are left out."""
-    lines, skipping = [], False
-    for line in text.splitlines():
-        skipping = skipping or line.startswith("static inline")
-        if not skipping:
-            lines.append(line)
-        skipping = skipping and line != "}"
-    return "\n".join(lines)
 
 
 @cache

@@ -11,7 +11,7 @@ import click
 from laconic.base.outputs import write_text
 from laconic.cli.options import OutputFolder, SceneName, goes_with, json_flag
 from laconic.errors import BadInput, ResultFails
-from laconic.tools.analyse.parts import PARTS
+from laconic.tools.analyse import PARTS
 
 if TYPE_CHECKING:
     from laconic.base.progress import Advance

@@ -95,15 +95,15 @@ def _learn(lanes: int, rounds: int) -> Found:
 
 
 def _soft_double(lanes: int, rounds: int) -> Found:
-    from laconic.tools.report import soft_double_cost
+    from laconic.tools.report import board_cost
 
-    return soft_double_cost.rows(), []
+    return board_cost.soft_double_rows(), []
 
 
 def _codes(lanes: int, rounds: int) -> Found:
-    from laconic.tools.report import code_cost
+    from laconic.tools.report import board_cost
 
-    return code_cost.rows(), []
+    return board_cost.code_rows(), []
 
 
 def _filter(lanes: int, rounds: int) -> Found:

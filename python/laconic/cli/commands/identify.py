@@ -64,7 +64,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     from laconic.robot.identify.geometry import geometry_of
     from laconic.robot.identify.picture import draw
     from laconic.robot.identify.study import identify, parts
-    from laconic.robot.identify.words_of_errors import failures
+    from laconic.robot.identify.words import failures
     from laconic.robot.logs import gather_logs
     from laconic.robot.logs.column_map import named_map
     from laconic.robot.replay.missed_wraps import rolled_alone

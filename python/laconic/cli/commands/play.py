@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from laconic.base.outputs import write_text
-from laconic.can.play.fault_kinds import KINDS as FAULTS
+from laconic.can.play.protocols import KINDS as FAULTS
 from laconic.can.rig.choices import KINDS, LOGS, ON_BUS
 from laconic.cli.options import (
     InputPath,

@@ -88,15 +88,14 @@ def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tu
 
 def _by_signals(log: Path, given: Any) -> Found:
     from laconic.robot.logs.for_vehicle import is_free
-    from laconic.robot.replay import signals_report as report
-    from laconic.robot.replay.signals import read_signal_log, replay_signals
+    from laconic.robot.replay import signals
 
     if given.has_hinges:
         remedy = "give --inputs wheel-speeds" if is_free(given) else \
             "give a --map with [steering_angle] and [wheel_angle]"
         raise BadInput(f"{given.path}: a file of signals does not drive vehicles with hinges yet; {remedy}")
-    found = replay_signals(given, read_signal_log(log))
-    return report.as_text(found), report.as_numbers(found), partial(report.draw, found)
+    found = signals.replay_signals(given, signals.read_signal_log(log))
+    return signals.as_text(found), signals.as_numbers(found), partial(signals.draw, found)
 
 
 def _by_map(paths: tuple[Path, ...], given: Any, inputs: str | None, fit_on: tuple[Path, ...],

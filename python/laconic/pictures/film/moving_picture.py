@@ -6,8 +6,8 @@ shows no animation (a printer, a reader who wants none) shows the end of the run
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
-from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def film(run: Trajectory) -> str:
     bodies, turning = hung(run, timing)
     panels, cursor = curves(_panels(run), run.time_s, timing, (428, HEAD, 276, HEIGHT - HEAD - 10))
     style = "".join((timing.style(), moving, wheels, turning, cursor))
-    name, words = escape(_short(run.scene.name)), f"{timing.in_words()}, grid of {grid_m(run, FIELD):g} m"
+    name, words = escape(_short(run.scene.name), quote=False), f"{timing.in_words()}, grid of {grid_m(run, FIELD):g} m"
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
             f'font-family="system-ui, sans-serif" font-size="19" fill="{INK}">\n'
             f"<title>{name}: {words}</title>\n<style>\n{style}</style>\n"

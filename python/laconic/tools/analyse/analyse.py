@@ -10,13 +10,13 @@ from laconic.core.given import finite_number, one_of, several
 from laconic.errors import BadInput, shown
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import check_ideal_ground
+from laconic.tools.analyse import GEOMETRY, PARTS
 from laconic.tools.analyse.bifurcation_part import bifurcation_part
 from laconic.tools.analyse.findings import Study, StudyOptions
 from laconic.tools.analyse.free_part import free_part, steady_part
 from laconic.tools.analyse.from_core import Subject, rolling_subject, subject_of
 from laconic.tools.analyse.geometry import diagnose
 from laconic.tools.analyse.motions import straight_columns
-from laconic.tools.analyse.parts import GEOMETRY, PARTS
 from laconic.tools.analyse.speeds import ROUNDING, without_rest
 from laconic.tools.analyse.traction import study as study_traction
 

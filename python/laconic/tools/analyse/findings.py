@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from laconic.tools.analyse import confirm
+from laconic.tools.analyse import PARTS, confirm
 from laconic.tools.analyse.continuation import Diagram
 from laconic.tools.analyse.cycle import HopfPoint, LimitCycle
 from laconic.tools.analyse.free_motion import FreeMotion
 from laconic.tools.analyse.from_core import Subject
 from laconic.tools.analyse.geometry import Geometry
 from laconic.tools.analyse.motions import Parameter
-from laconic.tools.analyse.parts import PARTS
 from laconic.tools.analyse.portrait import Portrait
 from laconic.tools.analyse.steady import Family, PushedHeading, SteadyMotion
 from laconic.tools.analyse.traction import Traction

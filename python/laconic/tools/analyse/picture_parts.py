@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import YAxis
 from matplotlib.figure import Figure
 
-from laconic.pictures.curve_style import wrapped
+from laconic.pictures.curves import wrapped
 from laconic.tools.analyse.findings import Study
 from laconic.tools.analyse.from_core import Subject
 from laconic.tools.analyse.speeds import wheel_radius_m

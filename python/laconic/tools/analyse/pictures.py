@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from laconic.pictures.curve_style import nested, style_of
+from laconic.pictures.curves import nested, style_of
 from laconic.pictures.plotting import figure, save
 from laconic.scene.methods import EXACT
 from laconic.tools.analyse.findings import FreePart, Study

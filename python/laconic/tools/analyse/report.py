@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from laconic.tools.analyse import TITLES
 from laconic.tools.analyse.findings import BifurcationPart, FreePart, SteadyPart, Study
 from laconic.tools.analyse.from_core import Subject
-from laconic.tools.analyse.parts import TITLES
 from laconic.tools.analyse.speeds import of_driver, wheel_radius_m
 from laconic.tools.analyse.traction import Traction
 

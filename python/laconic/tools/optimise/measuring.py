@@ -10,10 +10,10 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.scene.key_path import check_apart, key_path
 from laconic.scene.scene_tables import SceneTables
+from laconic.tools.measures import measure_given
+from laconic.tools.measures import measures_of as measures_of_kind
 from laconic.tools.measures.arguments import ArguedMeasure
 from laconic.tools.measures.measure import OF_RUN, Measure, lacks
-from laconic.tools.measures.registry import measure_given
-from laconic.tools.measures.registry import measures_of as measures_of_kind
 from laconic.tools.optimise.candidates import Candidates
 from laconic.tools.optimise.gradient import RunGradient
 from laconic.tools.optimise.problem import Constraint, Free, Goal, Problem, measures_of

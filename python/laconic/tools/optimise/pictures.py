@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.transforms import Affine2D
 
-from laconic.pictures.curve_style import wrapped
+from laconic.pictures.curves import wrapped
 from laconic.pictures.plotting import figure, save
 from laconic.scene import Scene
 from laconic.tools.measures.measure import Measure

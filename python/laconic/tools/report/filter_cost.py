@@ -20,7 +20,7 @@ from laconic.scene.methods import EXPLICIT
 from laconic.tools.control.filter import Filter
 from laconic.tools.report.counting import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
 from laconic.tools.report.workshop import BENCH, M4F, Target, Variant, Workshop, run_tool
-from laconic.tools.trim.c_tables import initializer
+from laconic.tools.trim.scene_files import initializer
 
 CYCLES, STEP_S, COUNTS = 100, 0.01, 2000
 VOLTS = 8.0

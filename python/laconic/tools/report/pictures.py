@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from laconic.core import load
-from laconic.pictures.curve_style import alternating_markers, nested, style_of, wrapped
+from laconic.pictures.curves import alternating_markers, nested, style_of, wrapped
 from laconic.pictures.plotting import check_formulas, figure
 from laconic.scene import METHODS, Scene
 

@@ -23,7 +23,7 @@ from laconic.errors import ResultFails
 from laconic.scene import Scene
 from laconic.scene.methods import ROWS
 from laconic.tools.trim import Trimmed, trimmed
-from laconic.tools.trim.c_tables import initializer
+from laconic.tools.trim.scene_files import initializer
 
 MADE = "core_c/liblaconic.a"  # of the build tree
 

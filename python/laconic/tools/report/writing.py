@@ -18,7 +18,7 @@ from rich.table import Table
 from laconic.base.outputs import opened, write_text
 from laconic.tools.report.collect import Report
 from laconic.tools.report.page import TEXT, TITLES, Document, Row, render, shown
-from laconic.tools.report.robot_sections import robot_sections
+from laconic.tools.report.robot import robot_sections
 from laconic.tools.report.sections import goal_sections, project_sections
 
 GOALS_PAGE = "goals.html"

@@ -1,6 +1,0 @@
-# core_folders: where the core's own headers are. A file includes another by its name alone, so that the core also
-# compiles from one flat folder, as source FMUs and packages of embedded tools have it.
-
-get_filename_component(core_source_folder "${CMAKE_CURRENT_LIST_DIR}/../src" ABSOLUTE)
-set(core_folders common math vehicle methods friction plant sensors)
-list(TRANSFORM core_folders PREPEND "${core_source_folder}/")

@@ -1,1 +1,0 @@
-"""Makes the documentation site: pages of docs/ and references that are generated, put together by Sphinx."""

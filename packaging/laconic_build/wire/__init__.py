@@ -1,1 +1,0 @@
-"""The wire contract from `laconic.dbc`: C tables for the node, and the page docs/wire.md."""
