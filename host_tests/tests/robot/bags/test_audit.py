@@ -17,7 +17,7 @@ from laconic.base.paths import scene_path
 from laconic.cli.main import run
 from laconic.robot.identify.report import interval
 from laconic.robot.replay.rolling import path_of
-from laconic.scene.scene_tables import rewritten
+from laconic.scene.scene_text import rewritten
 from laconic.scene.table import entries_of
 from recorded_data import recorded
 
@@ -231,13 +231,17 @@ def steered_log(folder: Path, kind: str, *, radius: float = 1.0, base: float = 1
     return folder / "run.csv", folder / "map.toml"
 
 
-@pytest.mark.parametrize("kind", ["tricycle", "car"])
-@pytest.mark.parametrize(("off", "cause", "name", "value"), [
+STEERED_CAUSES = [
     ({"radius": 1.04}, "radius of the wheels", "radius of the wheels, factor", 1.04),
     ({"base": 1.08}, "distance of the wheels", "distance of the wheels, factor", 1.08),
     ({"gain": 0.8}, "gain of the steering", "gain of the steering, factor", 0.8),
     ({"offset": 0.03}, "offset of the steering", "offset of the steering", 0.03),
-    ({"ahead_m": 0.4}, "place of the tracker", "place of the tracker, x", 0.4)])
+    ({"ahead_m": 0.4}, "place of the tracker", "place of the tracker, x", 0.4)]
+
+
+@pytest.mark.parametrize(("kind", "off", "cause", "name", "value"), [
+    pytest.param(kind, *each, marks=[] if (kind == "car") == (number % 2 > 0) else [pytest.mark.nightly])
+    for number, each in enumerate(STEERED_CAUSES) for kind in ("tricycle", "car")])
 def test_the_cause_gets_the_error_of_a_steered_vehicle(kind, off, cause, name, value, tmp_path, capsys):
     found = audited(capsys, *steered_log(tmp_path, kind, **off), steered_scene(tmp_path, kind))
     shares = {each["name"]: each["share"] for each in found["causes"]}
@@ -254,8 +258,8 @@ def test_a_late_tracker_of_a_steered_vehicle_is_found_with_its_lag(tmp_path, cap
 
 
 @pytest.mark.parametrize(("kind", "controller", "base"), [
-    ("tricycle", "tricycle_controller", "wheel_radius"), ("car", "ackermann_steering_controller",
-                                                          "traction_wheels_radius")])
+    ("tricycle", "tricycle_controller", "wheel_radius"), pytest.param(
+        "car", "ackermann_steering_controller", "traction_wheels_radius", marks=pytest.mark.nightly)])
 def test_steered_vehicles_are_exported_for_their_controllers(kind, controller, base, tmp_path, capsys):
     files = [tmp_path / name for name in ("control.yaml", "robot.h")]
     options = [word for path in files for word in ("--export", str(path))]

@@ -12,7 +12,7 @@ from laconic.errors import BadInput
 from laconic.robot.identify.fitted_toml import interval_text
 from laconic.robot.identify.study import Study, fitted_scene
 from laconic.robot.replay.steered_signals import OfLog, curved, of_log
-from laconic.scene.scene_tables import Comments, rewritten
+from laconic.scene.scene_text import Comments, rewritten
 from laconic.scene.table import read_toml
 
 PLACES = {"gain": ("steering_angle", "scale"), "offset_rad": ("steering_angle", "offset"),

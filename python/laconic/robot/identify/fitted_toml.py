@@ -13,7 +13,7 @@ from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
 from laconic.robot.identify.study import Study, fitted_scene, parts
 from laconic.robot.logs.for_vehicle import wheels_on_carriage
-from laconic.scene.scene_tables import Comments, rewritten
+from laconic.scene.scene_text import Comments, rewritten
 from laconic.scene.table import read_toml
 
 PLACED_BY = ("distance_m", "bearing_rad", "bearing_deg")
