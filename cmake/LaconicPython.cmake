@@ -65,11 +65,13 @@ add_dependencies(laconic_venv_all laconic_venv)
 if(LACONIC_PEERS)
     set(peers_lock "${PROJECT_SOURCE_DIR}/host_tests/requirements-peers.txt")
     set(peers_stamp "${CMAKE_BINARY_DIR}/peers/laconic.stamp")
+    string(CONCAT name_peers "import pathlib, sysconfig; pathlib.Path(sysconfig.get_path('purelib'), 'laconic_peers.pth')"
+                             ".write_text(r'${CMAKE_BINARY_DIR}/peers' + '\\n', encoding='utf-8')")
     add_custom_command(
         OUTPUT "${peers_stamp}"
         COMMAND "${LACONIC_PYTHON}" -m pip install --quiet --no-input --require-hashes --no-deps --upgrade
                 --target "${CMAKE_BINARY_DIR}/peers" -r "${peers_lock}"
-        COMMAND "${LACONIC_PYTHON}" "${PROJECT_SOURCE_DIR}/cmake/add_to_path.py" "${CMAKE_BINARY_DIR}/peers"
+        COMMAND "${LACONIC_PYTHON}" -c "${name_peers}"
         COMMAND "${CMAKE_COMMAND}" -E touch "${peers_stamp}"
         DEPENDS "${peers_lock}"
         COMMENT "Other integrators to compare with" USES_TERMINAL VERBATIM)

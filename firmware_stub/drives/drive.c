@@ -127,7 +127,7 @@ laconic_real laconic_drive_follow(laconic_wheel_drive *drive) {
     const laconic_real limit = drive->settings.speed_limit_rad_per_s;
     const bool by_place = drive->target.mode == LACONIC_DRIVE_POSITION;
     drive->limits = 0;
-    if (drive->faults != 0 || (drive->target.mode != LACONIC_DRIVE_SPEED && !by_place)) return 0;
+    if (drive->faults != 0 || drive->brake_Nm > 0 || (drive->target.mode != LACONIC_DRIVE_SPEED && !by_place)) return 0;
     laconic_real set_rad_per_s = by_place ? position_loop(drive) : drive->target.speed_rad_per_s;
     if (limit > 0) set_rad_per_s = within(drive, set_rad_per_s, -limit, limit, LACONIC_DRIVE_AT_SPEED);
     const laconic_real rate_rad_per_s = set_rad_per_s / drive->settings.gear_ratio;

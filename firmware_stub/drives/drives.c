@@ -194,3 +194,54 @@ void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articu
     }
 }
 #endif
+
+/* ------------------------------------------------------------------------------- slipping -- */
+
+#if LACONIC_NODE_WITH_SLIP
+
+void laconic_drives_measure_slipping(laconic_drives *drives, const laconic_tree_model *model,
+                                     const laconic_tree_state *before, const laconic_tree_state *after) {
+    laconic_articulated_motion motion;
+    laconic_tree_motion_of(&motion, model, after);
+    for (int32_t k = 0; k < drives->count; k++) {
+        const int32_t i = drives->wheel[k], b = i - model->wheel_count;
+        if (b < 0) {
+            laconic_drive_measure(&drives->drive[k],
+                                  difference(&after->wheel_angle_rad[i], &before->wheel_angle_rad[i]),
+                                  motion.wheel_speed_rad_per_s[i]);
+        } else {
+            laconic_drive_measure(&drives->drive[k], turned_rad(&before->hinge[b], &after->hinge[b]),
+                                  motion.hinge_rate_rad_per_s[b]);
+        }
+    }
+}
+
+void laconic_drives_start_slipping(laconic_drives *drives, const laconic_drive_plan *plan,
+                                   const laconic_drive_protocol *protocol, void *axes, const laconic_tree_model *model,
+                                   const laconic_tree_state *state, laconic_real step_s, uint32_t now_us) {
+    begin(drives, plan, protocol, axes, step_s, now_us);
+    laconic_drives_measure_slipping(drives, model, state, state);
+    begin_protocol(drives, now_us);
+}
+
+bool laconic_drives_brakes(const laconic_drives *drives, laconic_real brake_Nm[LACONIC_DRIVE_AXES]) {
+    bool some = false;
+    for (int32_t k = 0; k < drives->count; k++) {
+        brake_Nm[k] = drives->drive[k].brake_Nm;
+        some = some || brake_Nm[k] > 0;
+    }
+    return some;
+}
+
+void laconic_drives_exchange_dry_friction(const laconic_drives *drives, laconic_tree_model *model,
+                                          laconic_real other_Nm[LACONIC_DRIVE_AXES]) {
+    for (int32_t k = 0; k < drives->count; k++) {
+        const int32_t i = drives->wheel[k], b = i - model->wheel_count;
+        laconic_real *friction_Nm = b < 0 ? &model->wheel[i].dry_Nm : &model->body[b + 1].dry_friction_Nm;
+        if (!(drives->drive[k].brake_Nm > 0)) continue;
+        const laconic_real held_Nm = *friction_Nm;
+        *friction_Nm = other_Nm[k];
+        other_Nm[k] = held_Nm;
+    }
+}
+#endif

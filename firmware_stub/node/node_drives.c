@@ -32,6 +32,22 @@ static uint32_t rate_of(laconic_real step_s) {
     return off < slack * rate_Hz && off > -slack * rate_Hz ? whole : 0;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+static void start_with_hinges(laconic_node *node, const laconic_drive_protocol *protocol, uint32_t now_us) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const laconic_real step_s = hinges->integrator.step_s;
+#if LACONIC_NODE_WITH_SLIP
+    if (hinges->slips) {
+        laconic_drives_start_slipping(&node->drives, &node->drive_plan, protocol, node->axes, &hinges->tree_model,
+                                      &hinges->tree, step_s, now_us);
+        return;
+    }
+#endif
+    laconic_drives_start_with_hinges(&node->drives, &node->drive_plan, protocol, node->axes, &hinges->model,
+                                     &hinges->state, step_s, now_us);
+}
+#endif
+
 uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *field) {
     const laconic_drive_protocol *protocol = protocol_of(node, &node->drive_plan);
     if (!may_start(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
@@ -44,8 +60,7 @@ uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *
     laconic_node_begin_periods(node, rate_Hz, 1, now_us);
 #if LACONIC_NODE_WITH_HINGES
     if (has_hinges(node)) {
-        laconic_drives_start_with_hinges(&node->drives, &node->drive_plan, protocol, node->axes, &node->hinges.model,
-                                         &node->hinges.state, node->plant.integrator.step_s, now_us);
+        start_with_hinges(node, protocol, now_us);
         return 0;
     }
 #endif
@@ -53,9 +68,58 @@ uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *
     return 0;
 }
 
+#if LACONIC_NODE_WITH_HINGES
+
+#if LACONIC_NODE_WITH_SLIP
+/* A step of a vehicle that slips, with the brakes by order. */
+static laconic_status step_braked(laconic_node *node, laconic_refusal *why) {
+    laconic_real other_Nm[LACONIC_DRIVE_AXES];
+    laconic_tree_model *model = &node->hinges.tree_model;
+    const bool brakes = LACONIC_NODE_WITH_DRIVE_FAULTS && laconic_drives_brakes(&node->drives, other_Nm);
+    if (brakes) laconic_drives_exchange_dry_friction(&node->drives, model, other_Nm);
+    const laconic_status status = laconic_node_step_hinges(node, 1, why);
+    if (brakes) laconic_drives_exchange_dry_friction(&node->drives, model, other_Nm);
+    return status;
+}
+
+static laconic_status step_tree_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const laconic_tree_state before = hinges->tree;
+    laconic_drives_act_with_hinges(&node->drives, &hinges->model, &node->input[0], hinges->input, now_us);
+    hinges->input[0] = hinges->input[1];
+    const laconic_status status = step_braked(node, why);
+    if (status == LACONIC_OK)
+        laconic_drives_measure_slipping(&node->drives, &hinges->tree_model, &before, &hinges->tree);
+    return status;
+}
+#endif
+
+static laconic_status step_ideal_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+    laconic_node_hinges *hinges = &node->hinges;
+    const laconic_articulated_state before = hinges->state;
+    laconic_drives_act_with_hinges(&node->drives, &hinges->model, &node->input[0], hinges->input, now_us);
+    hinges->changes = true;
+    const laconic_status status = laconic_node_step_hinges(node, 1, why);
+    if (status == LACONIC_OK)
+        laconic_drives_measure_with_hinges(&node->drives, &hinges->model, &before, &hinges->state);
+    return status;
+}
+
+static laconic_status step_with_hinges(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_SLIP
+    const laconic_status status =
+        slips(node) ? step_tree_by_drives(node, now_us, why) : step_ideal_by_drives(node, now_us, why);
+#else
+    const laconic_status status = step_ideal_by_drives(node, now_us, why);
+#endif
+    if (status != LACONIC_OK) laconic_drives_off(&node->drives);
+    return status;
+}
+#endif
+
 static laconic_status step_unwatched(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
 #if LACONIC_NODE_WITH_HINGES
-    if (has_hinges(node)) return laconic_node_step_hinges_by_drives(node, now_us, why);
+    if (has_hinges(node)) return step_with_hinges(node, now_us, why);
 #endif
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node)) {
@@ -108,7 +172,8 @@ uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data) {
     for (int32_t k = 0; k < node->drives.count; k++) {
         if (node->drives.wheel[k] + 1 != data[3]) continue;
         if (upper_half || (orders & ~LACONIC_DRIVE_ORDERS) != 0) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
-        if (has_hinges(node) && (orders & LACONIC_DRIVE_ORDER_HELD) != 0) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+        const bool rolls = has_hinges(node) && !slips(node); /* such wheels hold each other: a brake has no share */
+        if (rolls && (orders & LACONIC_DRIVE_ORDER_HELD) != 0) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
         laconic_drive_order(&node->drives.drive[k], orders);
         return 0;
     }

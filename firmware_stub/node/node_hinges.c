@@ -42,13 +42,21 @@ static laconic_status refuse_run(laconic_refusal *why, laconic_status status, la
     return status;
 }
 
-/* What the frames of every vehicle with hinges read of its model. */
+/* Whether something leads a hinge: a command its rate, or a servo or loop its angle. */
+static laconic_hinge_motion motion_of_hinge(const laconic_tree_body *body) {
+    const bool led = body->servo || body->loop_V_per_rad != 0 || body->loop_Vs_per_rad != 0;
+    if (body->hinge == LACONIC_HINGE_PRESCRIBED) return LACONIC_MOTION_PRESCRIBED;
+    return led ? LACONIC_MOTION_FOLLOWING : LACONIC_MOTION_OWN;
+}
+
+/* What frames and drives of every vehicle with hinges read of its model. */
 static void describe_tree(laconic_node_hinges *fresh, laconic_real step_s) {
     const laconic_tree_model *m = &fresh->tree_model;
     fresh->slips = true;
     fresh->integrator.step_s = step_s;
     fresh->model.wheel_count = m->wheel_count;
     fresh->model.body_count = m->body_count;
+    for (int32_t b = 0; b < m->body_count; b++) fresh->model.link[b].motion = motion_of_hinge(&m->body[b + 1]);
 }
 
 /* One step of auto; a whole number of it is checked by each step. */
@@ -70,16 +78,11 @@ static laconic_status set_tree_start(laconic_node_hinges *hinges, const laconic_
     memcpy(start.wheel_speed_rad_per_s, wheel_speed_rad_per_s, sizeof start.wheel_speed_rad_per_s);
     return laconic_tree_state_set(&hinges->tree, &hinges->tree_model, &start, why);
 }
-#endif
 
 static bool is_to_slip(const laconic_parameters *new) {
-#if LACONIC_NODE_WITH_SLIP
     return new->vehicle.ground.friction_coefficient != 0;
-#else
-    (void)new;
-    return false;
-#endif
 }
+#endif
 
 static laconic_status prepare(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {
     laconic_articulated_vehicle whole;
@@ -117,15 +120,10 @@ static laconic_status find(laconic_node_hinges *fresh, const laconic_parameters 
 }
 
 #if LACONIC_NODE_WITH_DRIVES
-/* A drive turns a wheel, or a hinge that nothing else moves: neither its own wheels nor a twist. */
+/* A drive turns a wheel, or a hinge that nothing else moves: neither its own wheels nor a twist, servo or loop. */
 static uint8_t check_drives(const laconic_node *node, const laconic_node_hinges *fresh, uint8_t *field, uint8_t *item) {
     const laconic_drive_plan *plan = &node->loader.parameters.drives;
     const laconic_articulated_model *m = &fresh->model;
-    if (plan->protocol != 0 && is_to_slip(&node->loader.parameters)) {
-        *field = LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL;
-        *item = 0;
-        return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-    }
     const uint8_t status = laconic_node_check_drives(node, plan, m->wheel_count + m->body_count, field, item);
     if (status != 0) return status;
     for (int32_t b = 0; b < m->body_count; b++) {
@@ -413,21 +411,6 @@ laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refu
     for (int k = 0; k < 2; k++) node->hinges.input[k].base = node->input[k];
     return step_between(node, why);
 }
-
-#if LACONIC_NODE_WITH_DRIVES
-laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
-    laconic_node_hinges *hinges = &node->hinges;
-    const laconic_articulated_state before = hinges->state;
-    laconic_drives_act_with_hinges(&node->drives, &hinges->model, &node->input[0], hinges->input, now_us);
-    hinges->changes = true;
-    const laconic_status status = laconic_node_step_hinges(node, 1, why);
-    if (status == LACONIC_OK)
-        laconic_drives_measure_with_hinges(&node->drives, &hinges->model, &before, &hinges->state);
-    else
-        laconic_drives_off(&node->drives);
-    return status;
-}
-#endif
 
 /* ------------------------------------------------------------------------------------- outputs -- */
 

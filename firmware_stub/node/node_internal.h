@@ -206,9 +206,6 @@ void laconic_node_clear_hinge_inputs(laconic_node *node);
 bool laconic_node_take_steering(laconic_node *node, uint8_t page, const int16_t raw[3]);
 laconic_status laconic_node_step_hinges(laconic_node *node, uint64_t steps, laconic_refusal *why);
 laconic_status laconic_node_step_hinges_sampled(laconic_node *node, laconic_refusal *why);
-#if LACONIC_NODE_WITH_DRIVES
-laconic_status laconic_node_step_hinges_by_drives(laconic_node *node, uint32_t now_us, laconic_refusal *why);
-#endif
 void laconic_node_motion_of(laconic_articulated_motion *motion, const laconic_node *node);
 /* Reads the chosen outputs. */
 void laconic_node_collect_hinges(laconic_raw_output *raw, const laconic_node *node);

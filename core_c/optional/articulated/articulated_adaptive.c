@@ -136,29 +136,15 @@ static bool take_judged(laconic_articulated_state *state, const adaptive_part *p
     return true;
 }
 
-/* The body whose wheels follow fastest, and how fast; 0: none follows. */
-static int32_t fastest_follower(real *rate_per_s, const laconic_articulated_model *m,
-                                const laconic_articulated_state *state, const articulated_drive *drive) {
-    articulated_sweep s;
-    int32_t found = 0;
-    *rate_per_s = R(0);
-    sweep_mixed(&s, m, state, state, drive);
-    for (int32_t b = 1; b <= m->body_count; b++) {
-        const real rate = following_speed(&m->link[b - 1], s.twist[b]);
-        if (m->link[b - 1].motion != LACONIC_MOTION_FOLLOWING || !(rate > *rate_per_s)) continue;
-        *rate_per_s = rate;
-        found = b;
-    }
-    return found;
-}
-
 /* Refuses a step for the body whose wheels follow fastest; `largest`: of step times rate. */
 static laconic_status refuse_trail(const laconic_articulated_model *m, const laconic_articulated_state *state,
                                    const articulated_drive *drive, real step_s, real largest, laconic_refusal *why) {
-    real rate_per_s;
-    const int32_t body = fastest_follower(&rate_per_s, m, state, drive);
+    articulated_sweep s;
+    sweep_mixed(&s, m, state, state, drive);
+    const real square_rate = rates_of_posture(&s, m).caster_square;
+    const int32_t body = laconic_articulated_follower(&s, m, square_rate);
     if (body == 0) return refuse(why, LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0, step_s, R(0.5) * step_s);
-    const real longest = largest / rate_per_s;
+    const real longest = largest / laconic_root(square_rate);
     return refuse(why, LACONIC_STEP_BEYOND_TRAIL_LIMIT, (laconic_field)LACONIC_FIELD_OF_BODY_HINGE, body, step_s,
                   longest < R(0.5) * step_s ? longest : R(0.5) * step_s);
 }

@@ -114,7 +114,7 @@ INLINE bool solve_steered(real *x, real *correction, const articulated_sweep *s,
         const real o0 = s->mass[2][0], o1 = s->mass[2][1];
         if (s->row_of_own[0][0] != R(0)) return false;
         if (!solve_two(&sigma, &x[2], mass, c1 * o0 - c0 * o1, s->mass[2][2], push, s->push[2] - (o0 * p0 + o1 * p1)))
-            return false;
+            return false; /* GCOVR_EXCL_LINE: a prepared vehicle has inertia along both */
     }
     x[0] = p0 + sigma * c1;
     x[1] = p1 - sigma * c0;

@@ -22,14 +22,16 @@ typedef struct stage_sums {
     direction second[LACONIC_MAX_BODIES]; /* z₂ */
 } stage_sums;
 
-/* The body whose wheels follow as fast as that. */
-static int32_t body_of_rate(const articulated_sweep *s, const laconic_articulated_model *m, real caster_square) {
-    int32_t found = 0;
+int32_t laconic_articulated_follower(const articulated_sweep *s, const laconic_articulated_model *m, real square_rate) {
+    int32_t body = 0;
+    if (!(square_rate > R(0))) return 0;
     for (int32_t b = m->body_count; b > 0; b--) {
-        const real rate = following_speed(&m->link[b - 1], s->twist[b]);
-        if (m->link[b - 1].motion == LACONIC_MOTION_FOLLOWING && rate * rate >= R(0.999) * caster_square) found = b;
+        const laconic_link *link = &m->link[b - 1];
+        if (link->motion == LACONIC_MOTION_FOLLOWING &&
+            square_following_rate(link, s->twist[b]) >= R(0.999) * square_rate)
+            body = b;
     }
-    return found;
+    return body;
 }
 
 /* Casters and yaw rates that are too fast for a stable step. */
@@ -38,7 +40,8 @@ static laconic_status check_rates(const articulated_sweep *s, const laconic_arti
     const posture_rates fast = rates_of_posture(s, m);
     if (!circle && !(h * h * fast.caster_square <= largest * largest))
         return refuse(why, LACONIC_STEP_BEYOND_TRAIL_LIMIT, (laconic_field)LACONIC_FIELD_OF_BODY_HINGE,
-                      body_of_rate(s, m, fast.caster_square), h, largest / laconic_root(fast.caster_square));
+                      laconic_articulated_follower(s, m, fast.caster_square), h,
+                      largest / laconic_root(fast.caster_square));
     if (!(h * fast.yaw <= largest))
         return refuse(why, LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0, h, largest / fast.yaw);
     return LACONIC_OK;

@@ -149,10 +149,10 @@ typedef struct posture_rates {
     real caster_square, yaw;
 } posture_rates;
 
-/* v/a of a body, as rates_of_posture has its square */
-static inline real following_speed(const laconic_link *link, vector v) {
+/* (v/a)² of a body that follows. */
+INLINE real square_following_rate(const laconic_link *link, vector v) {
     const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
-    return laconic_root((v.x * v.x + v.y * v.y) * (mx * mx + my * my));
+    return (v.x * v.x + v.y * v.y) * (mx * mx + my * my);
 }
 
 INLINE posture_rates rates_of_posture(const articulated_sweep *s, const laconic_articulated_model *m) {
@@ -162,12 +162,14 @@ INLINE posture_rates rates_of_posture(const articulated_sweep *s, const laconic_
         const vector v = s->twist[b];
         if (magnitude(v.z) > fast.yaw) fast.yaw = magnitude(v.z);
         if (link->motion != LACONIC_MOTION_FOLLOWING) continue;
-        const real mx = link->axle_per_lever.x, my = link->axle_per_lever.y;
-        const real square_rate = (v.x * v.x + v.y * v.y) * (mx * mx + my * my);
+        const real square_rate = square_following_rate(link, v);
         if (square_rate > fast.caster_square) fast.caster_square = square_rate;
     }
     return fast;
 }
+
+/* The first body whose wheels follow as fast as that, to a share of 5e-4; 0: none follows. */
+int32_t laconic_articulated_follower(const articulated_sweep *s, const laconic_articulated_model *m, real square_rate);
 
 /* For steps of h and h/2. */
 void laconic_articulated_factors_of(laconic_articulated_factors factors[2], const laconic_articulated_model *m, real h);

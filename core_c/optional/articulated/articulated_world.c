@@ -1,5 +1,5 @@
 /* Forces that are fixed in the world: one on a point of body 0, and the slope's pull at each body's centre of mass. */
-#include "articulated_tree.h"
+#include "articulated_visit.h"
 
 #if LACONIC_MAX_BODIES > 0
 

@@ -13,27 +13,28 @@ typedef struct tree_energies { /* of one part, in J */
 } tree_energies;
 
 static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_state *s) {
+    for (int32_t b = 0; b <= p->pulled; b++) e->outer += p->h * dot(p->pull[b], s->body[b]);
     for (int32_t b = 0; b <= p->m->body_count; b++) {
         const tree_body *link = &p->m->body[b];
         const vector change = minus(s->body[b], p->carried[b]);
-        e->outer += p->h * dot(p->pull[b], s->body[b]);
         e->numerical += R(0.5) * (link->mass_kg * (change.x * change.x + change.y * change.y) +
                                   link->yaw_inertia_kgm2 * change.z * change.z);
     }
 }
 
-/* The electrical side of a motor that gave this torque at this speed. */
-static void tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real speed) {
+/* The electrical side of a motor at this speed. Returns its torque. */
+INLINE real tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real command_V,
+                             real speed) {
     const laconic_tree_motor *a = &p->m->motor[axis];
-    if (!a->acts) return;
-    const motor_state motor = laconic_tree_motor_at(p->m, axis, p->command_V[axis], speed, p->terminal_V);
+    const motor_state motor = tree_motor_at(a, command_V, speed, p->terminal_V);
     const bool known = a->ampere_per_Nm != R(0); /* the electrical side */
     const real fed = p->h * motor.voltage_V * (known ? motor.current_A : a->gain_Nm_per_V * speed);
     s->current_A[axis] = motor.current_A;
     s->limit[axis] = (int32_t)motor.limit;
-    s->motor_torque_Nm[axis] = motor.torque - a->viscous_Nms * speed;
+    const real torque = motor.torque - a->viscous_Nms * speed;
     e->supplied += fed;
-    e->motor += fed - p->h * s->motor_torque_Nm[axis] * speed;
+    e->motor += fed - p->h * torque * speed;
+    return torque;
 }
 
 static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s, int32_t i) {
@@ -41,42 +42,42 @@ static void tree_enter_wheel(tree_energies *e, const tree_part *p, tree_state *s
     const laconic_tree_rim *w = c->wheel;
     const real old = s->wheel_speed_rad_per_s[i], speed = c->speed, change = speed - old;
     const real torque = p->in->hinged.base.axle_torque_Nm[i];
-    for (int k = 0; k < 2; k++) {
-        e->slip += c->impulse[k] * (tree_dot(&c->row[k], c->on, &p->problem.nu, false) - w->rim[k] * speed);
-        s->grip_N[i][k] = c->impulse[k] / p->h;
-    }
+    e->slip += c->impulse[0] * (c->moved[0] - w->rim[0] * speed) + c->impulse[1] * (c->moved[1] - w->rim[1] * speed);
+    s->grip_N[i][0] = c->impulse[0] / p->h;
+    s->grip_N[i][1] = c->impulse[1] / p->h;
     e->axle += p->h * w->dry_Nm * magnitude(speed);
     e->outer += p->h * torque * speed;
     e->numerical += R(0.5) * w->inertia_kgm2 * change * change;
-    s->motor_torque_Nm[i] = R(0);
-    tree_enter_motor(e, p, s, i, speed);
-    s->motor_torque_Nm[i] += torque;
+    s->motor_torque_Nm[i] = torque;
+    if (p->m->motor[i].acts)
+        s->motor_torque_Nm[i] += tree_enter_motor(e, p, s, i, p->in->hinged.base.voltage_V[i], speed);
     sum_add(&s->wheel_angle_rad[i], R(0.5) * p->h * (old + speed));
     s->wheel_speed_rad_per_s[i] = speed;
     s->scrub_Nm[i] = R(0);
-    if (p->scrub[i] < 0) return;
-    const tree_element *scrub = &p->problem.element[p->scrub[i]];
-    s->scrub_Nm[i] = scrub->q / p->h;
-    e->scrub += scrub->q * tree_dot(scrub->row, scrub->on, &p->problem.nu, false);
+    if (p->scrub[i] == NULL) return;
+    s->scrub_Nm[i] = p->scrub[i]->q / p->h;
+    e->scrub += p->scrub[i]->q * s->body[w->body].z;
 }
 
 /* Torque on the body that servo, motor or prescribed rate gave. */
 static real tree_drive_torque(const tree_part *p, tree_state *s, int32_t b) {
     const tree_hinge_part *hinge = &p->hinge[b - 1];
     s->drive_Nm[b - 1] = R(0);
-    if (hinge->drive < 0) return hinge->torque_Nm - hinge->slope_Nms * p->z[2 + b];
-    s->drive_Nm[b - 1] = p->problem.element[hinge->drive].q / p->h;
+    if (hinge->drive == NULL) return hinge->torque_Nm - hinge->slope_Nms * p->z[2 + b];
+    s->drive_Nm[b - 1] = hinge->drive->q / p->h;
     return -s->drive_Nm[b - 1];
 }
 
 static void tree_enter_drive(tree_energies *e, const tree_part *p, tree_state *s, int32_t b) {
-    const int32_t axis = p->m->wheel_count + b - 1, drive = p->hinge[b - 1].drive;
+    const int32_t axis = p->m->wheel_count + b - 1;
     const real torque = tree_drive_torque(p, s, b), rate = p->z[2 + b];
     if (tree_has_motor(p->m, b)) {
-        tree_enter_motor(e, p, s, axis, rate);
+        const real command_V = tree_hinge_command(p->m, p->in, s, b);
+        if (p->m->motor[axis].acts) s->motor_torque_Nm[axis] = tree_enter_motor(e, p, s, axis, command_V, rate);
         return;
     }
-    const bool at_limit = p->m->body[b].servo && drive >= 0 && magnitude(torque) >= p->m->body[b].servo_limit_Nm;
+    const bool limited = p->m->body[b].servo && p->hinge[b - 1].drive != NULL;
+    const bool at_limit = limited && magnitude(torque) >= p->m->body[b].servo_limit_Nm;
     s->motor_torque_Nm[axis] = torque;
     s->limit[axis] = (int32_t)(at_limit ? LACONIC_LIMIT_CURRENT : LACONIC_LIMIT_NONE);
     e->servo += p->h * torque * rate;
@@ -94,20 +95,19 @@ static void tree_enter_spring(tree_energies *e, const tree_part *p, int32_t b) {
 
 static void tree_enter_hinge(tree_energies *e, const tree_part *p, tree_state *s, int32_t b) {
     const tree_hinge_part *hinge = &p->hinge[b - 1];
-    const tree_element *elements = p->problem.element;
     const real rate = p->z[2 + b];
     tree_enter_drive(e, p, s, b);
     tree_enter_spring(e, p, b);
     e->outer += p->h * p->in->hinged.hinge_torque_Nm[b - 1] * rate;
     e->hinge += p->h * p->m->body[b].damping_Nms * rate * rate;
     s->dry_Nm[b - 1] = s->stop_Nm[b - 1][0] = s->stop_Nm[b - 1][1] = R(0);
-    if (hinge->dry >= 0) {
-        s->dry_Nm[b - 1] = elements[hinge->dry].q / p->h;
-        e->hinge += elements[hinge->dry].q * rate;
+    if (hinge->dry != NULL) {
+        s->dry_Nm[b - 1] = hinge->dry->q / p->h;
+        e->hinge += hinge->dry->q * rate;
     }
-    for (int k = 0; hinge->stop >= 0 && k < 2; k++) {
-        s->stop_Nm[b - 1][k] = elements[hinge->stop + k].q / p->h;
-        e->stop += elements[hinge->stop + k].q * rate;
+    for (int k = 0; hinge->stop != NULL && k < 2; k++) {
+        s->stop_Nm[b - 1][k] = hinge->stop[k].q / p->h;
+        e->stop += hinge->stop[k].q * rate;
     }
 }
 

@@ -10,21 +10,18 @@
 #define TREE_FITS R(1e-6)
 #endif
 
-motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V) {
-    const laconic_tree_motor *a = &m->motor[axis];
-    return motor_state_of(a->circuit, a->gain_Nm_per_V, a->back_emf_Nms, a->torque_limit_Nm, a->ampere_per_Nm,
-                          command_V, speed, terminal_V);
-}
-
-static real tree_drawn_A(const tree_model *m, const real command_V[], const tree_state *state, real terminal_V,
+static real tree_drawn_A(const tree_model *m, const laconic_tree_input *in, const tree_state *state, real terminal_V,
                          real *per_volt) {
     real sum = R(0);
     for (int32_t i = 0; i < m->wheel_count + m->body_count; i++) {
         const laconic_tree_motor *a = &m->motor[i];
         if (a->circuit != LACONIC_MOTOR_DRIVEN || a->ampere_per_Nm == R(0)) continue;
-        const motor_state s = laconic_tree_motor_at(m, i, command_V[i], tree_axis_speed(m, state, i), terminal_V);
+        const bool wheel = i < m->wheel_count;
+        const real command_V =
+            wheel ? in->hinged.base.voltage_V[i] : tree_hinge_command(m, in, state, 1 + i - m->wheel_count);
+        const motor_state s = tree_motor_at(a, command_V, tree_axis_speed(m, state, i), terminal_V);
         const bool whole = s.limit == LACONIC_LIMIT_VOLTAGE;
-        const real duty = whole ? (command_V[i] > R(0) ? R(1) : R(-1)) : s.voltage_V / terminal_V;
+        const real duty = whole ? (command_V > R(0) ? R(1) : R(-1)) : s.voltage_V / terminal_V;
         const real current = s.current_A * duty;
         sum += current;
         *per_volt += whole ? a->gain_Nm_per_V * a->ampere_per_Nm : -current / terminal_V; /* c1 A/Nm = 1/R_a */
@@ -32,13 +29,13 @@ static real tree_drawn_A(const tree_model *m, const real command_V[], const tree
     return sum;
 }
 
-real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], const tree_state *state) {
+real laconic_tree_terminal_voltage(const tree_model *m, const laconic_tree_input *in, const tree_state *state) {
     real volts = state->supply_voltage_V > R(0) ? state->supply_voltage_V : m->supply_V;
     if (!(m->supply_V > R(0))) return R(-1);
     if (!(m->supply_resistance_ohm > R(0))) return m->supply_V;
     for (int k = 0; k < SAG_ROUNDS; k++) {
         real per_volt = R(0);
-        const real current = tree_drawn_A(m, command_V, state, volts, &per_volt);
+        const real current = tree_drawn_A(m, in, state, volts, &per_volt);
         if (sag_round(&volts, m->supply_V, m->supply_resistance_ohm, current, per_volt)) break;
     }
     return volts;

@@ -39,44 +39,58 @@ INLINE void tree_scale(tree_row *out, const tree_row *row, real by, int32_t dept
     for (int32_t k = 0; k < depth; k++) out->along[k] = by * row->along[k];
 }
 
-INLINE void tree_combine(tree_row *out, const tree_row rows[2], real first, real second, int32_t depth) {
-    out->base = plus(scaled(first, rows[0].base), scaled(second, rows[1].base));
-    for (int32_t k = 0; k < depth; k++) out->along[k] = first * rows[0].along[k] + second * rows[1].along[k];
+INLINE void tree_combine(tree_row *out, const tree_row rows[2], const real by[2], int32_t depth) {
+    out->base = plus(scaled(by[0], rows[0].base), scaled(by[1], rows[1].base));
+    for (int32_t k = 0; k < depth; k++) out->along[k] = by[0] * rows[0].along[k] + by[1] * rows[1].along[k];
 }
 
-INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, const tree_law *law, bool star) {
-    const int32_t depth = tree_depth(c->on, star);
-    tree_row part[2];
-    part[0].along[0] = part[1].along[0] = R(0); /* else compilers doubt it */
-    tree_subtract(rest, &c->row[0], law->impulse[0], c->on, star);
-    tree_subtract(rest, &c->row[1], law->impulse[1], c->on, star);
-    if (law->xy == R(0)) { /* most wheels that roll */
-        tree_scale(&part[0], &c->row[0], law->xx, depth);
-        tree_scale(&part[1], &c->row[1], law->yy, depth);
-    } else {
-        tree_combine(&part[0], c->row, law->xx, law->xy, depth);
-        tree_combine(&part[1], c->row, law->xy, law->yy, depth);
-    }
-    tree_add_product(k, &part[0], &c->row[0], c->on, star);
-    tree_add_product(k, &part[1], &c->row[1], c->on, star);
-}
-
-/* All elements of one row together. Returns the number of the next one. */
-INLINE int32_t tree_add_elements(tree_matrix *k, tree_vector *rest, const tree_problem *p,
-                                 const tree_element_law laws[], int32_t first, bool star) {
-    const tree_element *e = &p->element[first];
-    real q = laws[first].q, stiffness = laws[first].stiffness;
-    int32_t next = first + 1;
+/* Adds stiffness row rowᵀ. */
+INLINE void tree_add_square(tree_matrix *k, const tree_row *row, real stiffness, const tree_body *on, bool star) {
     tree_row part;
-    for (; next < p->element_count && p->element[next].row == e->row; next++) {
-        q += laws[next].q;
-        stiffness += laws[next].stiffness;
+    part.along[0] = R(0); /* else compilers doubt it */
+    tree_scale(&part, row, stiffness, tree_depth(on, star));
+    tree_add_product(k, &part, row, on, star);
+}
+
+INLINE void tree_add_contact(tree_matrix *k, tree_vector *rest, const tree_contact *c, bool star) {
+    const tree_law *law = &c->law;
+    const int32_t depth = tree_depth(c->on, star);
+    tree_row part;
+    part.along[0] = R(0); /* else compilers doubt it */
+    tree_subtract_both(rest, c->row, law->impulse, c->on, star);
+    if (law->axis[1] == R(0)) { /* most wheels that roll */
+        tree_add_square(k, &c->row[0], law->along, c->on, star);
+        tree_add_square(k, &c->row[1], law->across, c->on, star);
+        return;
     }
-    tree_subtract(rest, e->row, q, e->on, star);
-    if (stiffness == R(0)) return next;
-    tree_scale(&part, e->row, stiffness, tree_depth(e->on, star));
-    tree_add_product(k, &part, e->row, e->on, star);
-    return next;
+    tree_combine(&part, c->row, law->axis, depth);
+    tree_add_square(k, &part, law->along, c->on, star);
+    if (law->across == R(0)) return; /* wheels that slip */
+    tree_combine(&part, c->row, law->other, depth);
+    tree_add_square(k, &part, law->across, c->on, star);
+}
+
+/* By the larger pivot: what is left beside it is as exact as the smaller one. */
+void laconic_tree_split(tree_law *law, real xx, real xy, real yy) {
+    const bool first = xx >= yy, diagonal = xy == R(0);
+    const real more = first ? xx : yy, share = more > R(0) ? xy / more : R(0);
+    const real rest = (first ? yy : xx) - share * xy;
+    law->along = diagonal ? xx : more;
+    law->across = diagonal ? yy : (rest > R(0) ? rest : R(0));
+    law->axis[0] = first ? R(1) : share;
+    law->axis[1] = diagonal ? R(0) : (first ? share : R(1));
+    law->other[0] = first ? R(0) : R(1);
+    law->other[1] = first ? R(1) : R(0);
+}
+
+INLINE void tree_add_bundle(tree_matrix *k, tree_vector *rest, const tree_bundle *b, bool star) {
+    real q = R(0), stiffness = R(0);
+    for (const tree_element *e = b->first; e < b->end; e++) {
+        q += e->law_q;
+        stiffness += e->law_stiffness;
+    }
+    tree_subtract(rest, &b->row, q, b->on, star);
+    if (stiffness > R(0)) tree_add_square(k, &b->row, stiffness, b->on, star);
 }
 
 /* Takes hinge j out of the equations of those before it. */
@@ -132,39 +146,70 @@ INLINE void tree_difference(tree_vector *rest, const tree_problem *p) {
     for (int32_t j = 0; j < p->m->body_count; j++) rest->hinge[j] = p->free.hinge[j] - p->nu.hinge[j];
 }
 
-INLINE void tree_move_on(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by,
-                         bool star) {
+INLINE void tree_move_bundle(tree_bundle *b, const tree_vector *by, bool star) {
+    const real x = tree_dot(&b->row, b->on, by, star);
+    b->moved += x;
+    for (tree_element *e = b->first; e < b->end; e++) e->q = e->law_q + e->law_stiffness * x;
+}
+
+INLINE void tree_move_on(tree_problem *p, bool star) {
+    tree_contact *const beyond = p->contact + p->contact_count;
+    tree_bundle *const last = p->bundle + p->bundle_count;
     tree_matrix k;
+    tree_vector by;
     tree_unit_matrix(&k, p->m, star);
-    tree_difference(by, p);
-    for (int32_t i = 0; i < p->contact_count; i++) tree_add_contact(&k, by, &p->contact[i], &laws[i], star);
-    for (int32_t i = 0; i < p->element_count;) i = tree_add_elements(&k, by, p, elements, i, star);
-    tree_solve_equations(&k, by, p->m, star);
-    tree_add(&p->nu, by, p->m->body_count);
+    tree_difference(&by, p);
+    for (const tree_contact *c = p->contact; c < beyond; c++) tree_add_contact(&k, &by, c, star);
+    for (const tree_bundle *b = p->bundle; b < last; b++) tree_add_bundle(&k, &by, b, star);
+    tree_solve_equations(&k, &by, p->m, star);
+    tree_add(&p->nu, &by, p->m->body_count);
+    for (tree_contact *c = p->contact; c < beyond; c++) {
+        tree_dot_both(c->law.slip, c->row, c->on, &by, star);
+        c->moved[0] += c->law.slip[0];
+        c->moved[1] += c->law.slip[1];
+    }
+    for (tree_bundle *b = p->bundle; b < last; b++) tree_move_bundle(b, &by, star);
 }
 
-RARE void tree_move_deep(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by) {
-    tree_move_on(p, laws, elements, by, false);
-}
+RARE void tree_move_deep(tree_problem *p) { tree_move_on(p, false); }
 
-void laconic_tree_move(tree_problem *p, const tree_law laws[], const tree_element_law elements[], tree_vector *by) {
+void laconic_tree_move(tree_problem *p) {
     if (p->m->star)
-        tree_move_on(p, laws, elements, by, true);
+        tree_move_on(p, true);
     else
-        tree_move_deep(p, laws, elements, by);
+        tree_move_deep(p);
+}
+
+/* ------------------------------------------------------------------------------- ν and its forces -- */
+
+INLINE void tree_look_on(tree_problem *p, bool star) {
+    for (int32_t i = 0; i < p->contact_count; i++) {
+        tree_contact *c = &p->contact[i];
+        tree_dot_both(c->moved, c->row, c->on, &p->nu, star);
+    }
+    for (int32_t i = 0; i < p->bundle_count; i++) {
+        tree_bundle *b = &p->bundle[i];
+        b->moved = tree_dot(&b->row, b->on, &p->nu, star);
+    }
+}
+
+RARE void tree_look_deep(tree_problem *p) { tree_look_on(p, false); }
+
+void laconic_tree_look(tree_problem *p) {
+    if (p->m->star)
+        tree_look_on(p, true);
+    else
+        tree_look_deep(p);
 }
 
 INLINE void tree_take_forces(tree_vector *from, const tree_problem *p, bool star) {
-    for (int32_t i = 0; i < p->contact_count; i++) {
-        const tree_contact *c = &p->contact[i];
-        tree_subtract(from, &c->row[0], c->impulse[0], c->on, star);
-        tree_subtract(from, &c->row[1], c->impulse[1], c->on, star);
-    }
-    for (int32_t i = 0; i < p->element_count;) {
-        const tree_element *e = &p->element[i];
+    for (int32_t i = 0; i < p->contact_count; i++)
+        tree_subtract_both(from, p->contact[i].row, p->contact[i].impulse, p->contact[i].on, star);
+    for (int32_t i = 0; i < p->bundle_count; i++) {
+        const tree_bundle *b = &p->bundle[i];
         real q = R(0);
-        for (; i < p->element_count && p->element[i].row == e->row; i++) q += p->element[i].q;
-        tree_subtract(from, e->row, q, e->on, star);
+        for (const tree_element *e = b->first; e < b->end; e++) q += e->q;
+        tree_subtract(from, &b->row, q, b->on, star);
     }
 }
 

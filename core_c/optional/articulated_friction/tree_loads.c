@@ -18,31 +18,44 @@
 #endif
 #define TREE_STATIC_POINTS (LACONIC_TREE_POINTS + 1)
 
-/* The points of one group; the hitch, which never lifts, has the index −1. */
+/* A wheel or support on the ground; the hitch, which never lifts, has the index −1. */
+typedef struct tree_point {
+    real x, y, load_N;
+    int32_t index;
+    bool lifted;
+} tree_point;
+
 typedef struct tree_group {
-    int32_t count, index[TREE_STATIC_POINTS];
-    vector row[TREE_STATIC_POINTS]; /* 1 m, x, y */
-    real load_N[TREE_STATIC_POINTS];
-    bool lifted[TREE_STATIC_POINTS];
-    vector wanted;
+    int32_t count;
+    tree_point point[TREE_STATIC_POINTS];
+    vector wanted; /* Σ of loads, of loads x, of loads y */
 } tree_group;
 
-static void tree_add_point(tree_group *g, int32_t index, real x, real y) {
-    g->index[g->count] = index;
-    g->lifted[g->count] = false;
-    g->row[g->count++] = vector_of(R(1), x, y);
+INLINE void tree_add_point(tree_group *g, int32_t index, real x, real y) {
+    tree_point *point = &g->point[g->count++];
+    point->x = x;
+    point->y = y;
+    point->index = index;
+    point->lifted = false;
 }
 
 static void tree_add_weight(tree_group *g, real force_N, real x, real y) {
     g->wanted = plus(g->wanted, vector_of(force_N, force_N * x, force_N * y));
 }
 
-/* Solves Σ row rowᵀ λ = wanted over the points on the ground; false where they do not determine it. */
+/* Solves Σ row rowᵀ λ = wanted, row = (1, x, y), over the points on the ground; false where they do not determine it. */
 static bool tree_balance(vector *lambda, const tree_group *g) {
     equations e;
     e.xx = e.xy = e.xz = e.yy = e.yz = e.zz = R(0);
-    for (int32_t k = 0; k < g->count; k++)
-        if (!g->lifted[k]) add_product(&e, g->row[k], g->row[k]);
+    for (const tree_point *t = g->point; t < g->point + g->count; t++) {
+        if (t->lifted) continue;
+        e.xx += R(1);
+        e.xy += t->x;
+        e.xz += t->y;
+        e.yy += t->x * t->x;
+        e.yz += t->x * t->y;
+        e.zz += t->y * t->y;
+    }
     if (!(e.xx > R(0))) return false;
     const real lxy = e.xy / e.xx, lxz = e.xz / e.xx, dy = e.yy - lxy * e.xy, below = e.yz - lxz * e.xy;
     if (!(dy > TREE_LEAST_PIVOT * e.yy)) return false;
@@ -55,33 +68,47 @@ static bool tree_balance(vector *lambda, const tree_group *g) {
     return true;
 }
 
+/* Loads of the points on the ground. Returns the least. */
+static real tree_spread(tree_group *g, vector lambda) {
+    real least = R(0);
+    for (tree_point *t = g->point; t < g->point + g->count; t++) {
+        if (t->lifted) continue;
+        t->load_N = lambda.x + lambda.y * t->x + lambda.z * t->y;
+        if (t->load_N < least) least = t->load_N;
+    }
+    return least;
+}
+
 /* Points on one line, or fewer than three: the least-norm part that they can hold. */
 RARE void tree_balance_what_can_be(tree_group *g) {
     real rows[TREE_STATIC_POINTS][3], solver[TREE_STATIC_POINTS][3];
-    for (int32_t k = 0; k < g->count; k++) store(rows[k], g->lifted[k] ? none : g->row[k]);
+    for (int32_t k = 0; k < g->count; k++)
+        store(rows[k], g->point[k].lifted ? none : vector_of(R(1), g->point[k].x, g->point[k].y));
     laconic_least_norm(solver, (const real(*)[3])rows, g->count);
     for (int32_t k = 0; k < g->count; k++)
-        if (!g->lifted[k]) g->load_N[k] = dot(vec(solver[k]), g->wanted);
+        if (!g->point[k].lifted) g->point[k].load_N = dot(vec(solver[k]), g->wanted);
 }
 
 /* What the wheels and supports left carry is the weight, whatever moments they cannot hold. */
 static void tree_carry_weight(tree_group *g) {
     real sum = R(0), weight = g->wanted.x;
     for (int32_t k = 0; k < g->count; k++) {
-        if (g->index[k] < 0) weight -= g->load_N[k];
-        if (g->index[k] < 0 || g->lifted[k]) continue;
-        if (g->load_N[k] < R(0)) g->load_N[k] = R(0);
-        sum += g->load_N[k];
+        tree_point *t = &g->point[k];
+        if (t->index < 0) weight -= t->load_N;
+        if (t->index < 0 || t->lifted) continue;
+        if (t->load_N < R(0)) t->load_N = R(0);
+        sum += t->load_N;
     }
     for (int32_t k = 0; k < g->count && sum > R(0); k++)
-        if (g->index[k] >= 0 && !g->lifted[k]) g->load_N[k] *= weight / sum;
+        if (g->point[k].index >= 0 && !g->point[k].lifted) g->point[k].load_N *= weight / sum;
 }
 
 static bool tree_lift(tree_group *g) {
     bool another = false;
-    for (int32_t k = 0; k < g->count; k++)
-        if (g->index[k] >= 0 && !g->lifted[k] && g->load_N[k] < TREE_LIFTS * magnitude(g->wanted.x))
-            g->lifted[k] = another = true;
+    for (int32_t k = 0; k < g->count; k++) {
+        tree_point *t = &g->point[k];
+        if (t->index >= 0 && !t->lifted && t->load_N < TREE_LIFTS * magnitude(g->wanted.x)) t->lifted = another = true;
+    }
     return another;
 }
 
@@ -89,55 +116,59 @@ static bool tree_lift(tree_group *g) {
 RARE void tree_share_again(tree_group *g) {
     while (tree_lift(g)) { /* ends: each round lifts a point */
         vector lambda;
-        if (!tree_balance(&lambda, g)) {
+        if (tree_balance(&lambda, g))
+            (void)tree_spread(g, lambda);
+        else
             tree_balance_what_can_be(g);
-            continue;
-        }
-        for (int32_t k = 0; k < g->count; k++)
-            if (!g->lifted[k]) g->load_N[k] = dot(g->row[k], lambda);
     }
     tree_carry_weight(g);
 }
 
 static void tree_share(tree_group *g) {
     vector lambda;
-    bool pulls = false;
-    if (!tree_balance(&lambda, g)) {
-        tree_balance_what_can_be(g);
-        tree_share_again(g);
-        return;
+    const bool balanced = tree_balance(&lambda, g);
+    if (!balanced) tree_balance_what_can_be(g);
+    if (!balanced || tree_spread(g, lambda) < R(0)) tree_share_again(g);
+}
+
+/* Weights of a group, and what its trailers press on their hitches. */
+static void tree_add_weights(tree_group *g, int32_t number, const tree_model *m, const tree_posture *at,
+                             const real hitch_N[]) {
+    for (int32_t b = number; b <= m->body_count; b++) {
+        const tree_body *link = &m->body[b];
+        if (link->group == number)
+            tree_add_weight(g, link->mass_kg * m->gravity_m_per_s2, at->hinge_x[b] + at->arm_x[b],
+                            at->hinge_y[b] + at->arm_y[b]);
+        else if (link->hitch && m->body[link->parent].group == number)
+            tree_add_weight(g, hitch_N[b], at->hinge_x[b], at->hinge_y[b]);
     }
-    for (int32_t k = 0; k < g->count; k++) {
-        g->load_N[k] = dot(g->row[k], lambda);
-        pulls = pulls || g->load_N[k] < R(0);
+}
+
+/* The ground's force on a group acts below its centre of mass. */
+static void tree_add_pitch(tree_group *g, int32_t number, const tree_model *m, const tree_place_of_wheel place[],
+                           const tree_state *state) {
+    real fx = R(0), fy = R(0);
+    for (int32_t i = 0; i < m->wheel_count; i++) {
+        const real along = -state->grip_N[i][0], across = -m->wheel[i].drag * state->grip_N[i][1];
+        if (m->body[m->wheel[i].body].group != number) continue;
+        fx += along * place[i].pull.cosine - across * place[i].pull.sine;
+        fy += along * place[i].pull.sine + across * place[i].pull.cosine;
     }
-    if (pulls) tree_share_again(g);
+    g->wanted.y -= m->body[number].com_z_m * fx;
+    g->wanted.z -= m->body[number].com_z_m * fy;
 }
 
 static void tree_fill_group(tree_group *g, int32_t number, const tree_model *m, const tree_posture *at,
                             const tree_place_of_wheel place[], const tree_state *state, const real hitch_N[]) {
-    real fx = R(0), fy = R(0);
     g->count = 0;
     g->wanted = none;
-    for (int32_t b = number; b <= m->body_count; b++) {
-        if (m->body[b].group == number)
-            tree_add_weight(g, m->body[b].mass_kg * m->gravity_m_per_s2, at->com_x[b], at->com_y[b]);
-        else if (m->body[b].hitch && m->body[m->body[b].parent].group == number)
-            tree_add_weight(g, hitch_N[b], at->hinge_x[b], at->hinge_y[b]);
-    }
-    for (int32_t i = 0; i < m->wheel_count; i++) {
-        if (m->body[m->wheel[i].body].group != number) continue;
-        tree_add_point(g, i, place[i].x, place[i].y);
-        if (m->body[number].com_z_m == R(0)) continue;
-        const real along = -state->grip_N[i][0], across = -m->wheel[i].drag * state->grip_N[i][1];
-        fx += along * place[i].pull.cosine - across * place[i].pull.sine;
-        fy += along * place[i].pull.sine + across * place[i].pull.cosine;
-    }
+    tree_add_weights(g, number, m, at, hitch_N);
+    if (m->body[number].com_z_m != R(0)) tree_add_pitch(g, number, m, place, state);
+    for (int32_t i = 0; i < m->wheel_count; i++)
+        if (m->body[m->wheel[i].body].group == number) tree_add_point(g, i, place[i].x, place[i].y);
     for (int32_t i = m->wheel_count; number == 0 && i < m->point_count; i++)
         tree_add_point(g, i, m->support_m[i - m->wheel_count][0], m->support_m[i - m->wheel_count][1]);
     if (number > 0) tree_add_point(g, -1, at->hinge_x[number], at->hinge_y[number]);
-    g->wanted.y -= m->body[number].com_z_m * fx;
-    g->wanted.z -= m->body[number].com_z_m * fy;
 }
 
 void laconic_tree_loads(tree_loads *loads, const tree_model *m, const tree_posture *at,
@@ -151,14 +182,13 @@ void laconic_tree_loads(tree_loads *loads, const tree_model *m, const tree_postu
         tree_fill_group(&g, b, m, at, place, state, hitch_N);
         tree_share(&g);
         hitch_N[b] = R(0);
-        for (int32_t k = 0; k < g.count; k++) {
-            if (g.index[k] < 0) {
-                hitch_N[b] = g.load_N[k];
+        for (const tree_point *t = g.point; t < g.point + g.count; t++) {
+            if (t->index < 0) {
+                hitch_N[b] = t->load_N;
                 continue;
             }
-            loads->statics_N[g.index[k]] = g.load_N[k];
-            loads->carried_N[g.index[k]] = g.lifted[k] || g.load_N[k] < R(0) ? R(0) : g.load_N[k];
-            if (!g.lifted[k]) loads->statics_N[g.index[k]] = loads->carried_N[g.index[k]];
+            loads->carried_N[t->index] = t->lifted || t->load_N < R(0) ? R(0) : t->load_N;
+            loads->statics_N[t->index] = t->lifted ? t->load_N : loads->carried_N[t->index];
         }
     }
 }

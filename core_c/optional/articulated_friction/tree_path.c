@@ -27,12 +27,11 @@ static void tree_soften_creep(soft_wheel *restrict s, const tree_contact *c) {
     s->xy = s->xy / whole;
 }
 
-static void tree_soften_wheel(tree_law *law, soft_wheel *restrict s, real *fall, const tree_problem *p, int32_t i,
-                              const tree_path *path) {
-    const tree_contact *c = &p->contact[i];
+static void tree_soften_wheel(soft_wheel *restrict s, real *fall, tree_problem *p, int32_t i, const tree_path *path) {
+    tree_contact *c = &p->contact[i];
     const real *rim = c->wheel->rim, size = c->wheel->rim_size;
-    const real slip[2] = {tree_dot(&c->row[0], c->on, &p->nu, false) - rim[0] * c->speed - c->creep * c->impulse[0],
-                          tree_dot(&c->row[1], c->on, &p->nu, false) - rim[1] * c->speed - c->creep * c->impulse[1]};
+    const real slip[2] = {c->moved[0] - rim[0] * c->speed - c->creep * c->impulse[0],
+                          c->moved[1] - rim[1] * c->speed - c->creep * c->impulse[1]};
     const real speed = c->speed, inertia = c->wheel->inertia_kgm2;
     s->xx = s->xy = s->yy = s->impulse[0] = s->impulse[1] = s->axle = s->axle_growth = R(0);
     if (c->load.grip > R(0))
@@ -44,67 +43,62 @@ static void tree_soften_wheel(tree_law *law, soft_wheel *restrict s, real *fall,
                               tau_of(path, c->load.axle, inertia + size * size));
     soften_motor(s, fall, &c->load, speed, path->motor[i], path);
     const soft_law g = without_speed(s, rim, inertia, &c->load, speed);
-    law->xx = g.xx;
-    law->xy = g.xy;
-    law->yy = g.yy;
-    law->impulse[0] = g.impulse[0];
-    law->impulse[1] = g.impulse[1];
+    laconic_tree_split(&c->law, g.xx, g.xy, g.yy);
+    c->law.impulse[0] = g.impulse[0];
+    c->law.impulse[1] = g.impulse[1];
 }
 
 /* A stop, by Newton's method on q as an unknown of its own. */
-static void tree_soften_stop(tree_element_law *law, real *fall, const tree_element *e, real away,
-                             const tree_path *path) {
+static void tree_soften_stop(tree_element *e, real *fall, real mobility, real away, const tree_path *path) {
     const real sign = e->high >= LACONIC_REAL_MAX ? R(1) : R(-1), q = sign * e->q;
-    const real t = q + sign * away / e->mobility;
-    const real root = root_of(t * t + R(4) * path->softness / e->mobility), slope = R(0.5) * (R(1) + t / root);
+    const real t = q + sign * away / mobility;
+    const real root = root_of(t * t + R(4) * path->softness / mobility), slope = R(0.5) * (R(1) + t / root);
     const real off = q - R(0.5) * (t + root), left = R(1) - slope;
     const real gap = left > TREE_LEAST_GAP ? left : TREE_LEAST_GAP;
-    const real stiffness = slope / (e->mobility * gap), most = STIFFEST / e->mobility;
-    law->q = sign * (q - off / gap);
-    law->stiffness = stiffness < most ? stiffness : most;
-    fall_by(fall, off * off * e->mobility, root_of(path->softness));
+    const real stiffness = slope / (mobility * gap), most = STIFFEST / mobility;
+    e->law_q = sign * (q - off / gap);
+    e->law_stiffness = stiffness < most ? stiffness : most;
+    fall_by(fall, off * off * mobility, root_of(path->softness));
 }
 
-static void tree_soften_element(tree_element_law *law, real *fall, const tree_element *e, const tree_vector *nu,
-                                const tree_path *path) {
-    const real away = tree_dot(e->row, e->on, nu, false) - e->target;
+static void tree_soften_element(tree_element *e, real *fall, const tree_bundle *b, const tree_path *path) {
+    const real away = b->moved - e->target;
     if (tree_unbounded(e)) {
-        const real penalty = PENALTY / e->mobility, soft = R(1) + penalty * e->compliance;
-        law->stiffness = penalty / soft;
-        law->q = (e->q + penalty * away) / soft;
+        const real penalty = PENALTY / b->mobility, soft = R(1) + penalty * e->compliance;
+        e->law_stiffness = penalty / soft;
+        e->law_q = (e->q + penalty * away) / soft;
     } else if (tree_one_sided(e)) {
-        tree_soften_stop(law, fall, e, away, path);
+        tree_soften_stop(e, fall, b->mobility, away, path);
     } else if (e->high > R(0)) {
         real growth;
-        const real tau = tau_of(path, e->high, R(1) / (e->mobility + e->compliance));
+        const real tau = tau_of(path, e->high, R(1) / e->all);
         const real q = dry_impulse(&growth, fall, e->high, away - e->compliance * e->q, e->q, tau);
         const real share = R(1) / (R(1) + growth * e->compliance);
-        law->q = e->q + share * (q - e->q);
-        law->stiffness = growth * share;
+        e->law_q = e->q + share * (q - e->q);
+        e->law_stiffness = growth * share;
     } else {
-        law->q = law->stiffness = R(0);
+        e->law_q = e->law_stiffness = R(0);
     }
 }
 
 void laconic_tree_follow_path(tree_problem *p, tree_path *path) {
     soft_wheel wheels[TREE_WHEELS];
-    tree_law laws[TREE_WHEELS];
-    tree_element_law elements[TREE_ELEMENTS];
-    tree_vector by;
     const real least = LEAST_SOFTNESS * p->scale;
     real fall = FALL_NEAR;
-    for (int32_t i = 0; i < p->contact_count; i++) tree_soften_wheel(&laws[i], &wheels[i], &fall, p, i, path);
-    for (int32_t i = 0; i < p->element_count; i++)
-        tree_soften_element(&elements[i], &fall, &p->element[i], &p->nu, path);
-    laconic_tree_move(p, laws, elements, &by);
+    for (int32_t i = 0; i < p->contact_count; i++) tree_soften_wheel(&wheels[i], &fall, p, i, path);
+    for (int32_t i = 0; i < p->bundle_count; i++) {
+        const tree_bundle *b = &p->bundle[i];
+        for (tree_element *e = b->first; e < b->end; e++) tree_soften_element(e, &fall, b, path);
+    }
+    laconic_tree_move(p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         tree_contact *c = &p->contact[i];
-        move_softly(&wheels[i], tree_dot(&c->row[0], c->on, &by, false), tree_dot(&c->row[1], c->on, &by, false),
-                    c->wheel->rim, &c->load, &c->speed, c->impulse, path, i);
+        move_softly(&wheels[i], c->law.slip[0], c->law.slip[1], c->wheel->rim, &c->load, &c->speed, c->impulse, path,
+                    i);
     }
     for (int32_t i = 0; i < p->element_count; i++) {
         tree_element *e = &p->element[i];
-        e->q = tree_boxed(elements[i].q + elements[i].stiffness * tree_dot(e->row, e->on, &by, false), e->low, e->high);
+        e->q = tree_boxed(e->q, e->low, e->high);
     }
     path->softness *= fall;
     if (path->softness < least) path->softness = least;

@@ -39,7 +39,9 @@ typedef struct tree_matrix {
 
 typedef struct tree_posture {
     direction axes[TREE_BODIES];
-    real hinge_x[TREE_BODIES], hinge_y[TREE_BODIES], com_x[TREE_BODIES], com_y[TREE_BODIES];
+    real hinge_x[TREE_BODIES], hinge_y[TREE_BODIES];
+    real from_x[TREE_BODIES], from_y[TREE_BODIES]; /* the hinge from the parent's hinge     */
+    real arm_x[TREE_BODIES], arm_y[TREE_BODIES];   /* the centre of mass from its own hinge */
 } tree_posture;
 
 /* L with inverse diagonals. */
@@ -60,6 +62,18 @@ INLINE real tree_dot(const tree_row *row, const tree_body *on, const tree_vector
     return sum;
 }
 
+/* The same of both rows of a contact. */
+INLINE void tree_dot_both(real out[2], const tree_row rows[2], const tree_body *on, const tree_vector *x, bool star) {
+    real first = dot(rows[0].base, x->base), second = dot(rows[1].base, x->base);
+    for (int32_t k = 0; k < tree_depth(on, star); k++) {
+        const real turn = x->hinge[on->path[k]];
+        first += rows[0].along[k] * turn;
+        second += rows[1].along[k] * turn;
+    }
+    out[0] = first;
+    out[1] = second;
+}
+
 INLINE real tree_row_product(const tree_row *a, const tree_row *b, const tree_body *on, bool star) {
     real sum = dot(a->base, b->base);
     for (int32_t k = 0; k < tree_depth(on, star); k++) sum += a->along[k] * b->along[k];
@@ -69,6 +83,14 @@ INLINE real tree_row_product(const tree_row *a, const tree_row *b, const tree_bo
 INLINE void tree_subtract(tree_vector *from, const tree_row *row, real times_row, const tree_body *on, bool star) {
     from->base = minus(from->base, scaled(times_row, row->base));
     for (int32_t k = 0; k < tree_depth(on, star); k++) from->hinge[on->path[k]] -= times_row * row->along[k];
+}
+
+INLINE void tree_subtract_both(tree_vector *from, const tree_row rows[2], const real by[2], const tree_body *on,
+                               bool star) {
+    const real a = by[0], b = by[1];
+    from->base = minus(from->base, plus(scaled(a, rows[0].base), scaled(b, rows[1].base)));
+    for (int32_t k = 0; k < tree_depth(on, star); k++)
+        from->hinge[on->path[k]] -= a * rows[0].along[k] + b * rows[1].along[k];
 }
 
 static inline void tree_add(tree_vector *to, const tree_vector *x, int32_t hinges) {
@@ -88,25 +110,26 @@ static inline direction tree_turned(direction a, direction by) {
     return direction_with(a.cosine * by.cosine - a.sine * by.sine, a.sine * by.cosine + a.cosine * by.sine);
 }
 
-/* Places all bodies; `turned`: each hinge's angle. */
-static inline void tree_place(tree_posture *p, const tree_model *m, const direction turned[]) {
+/* Places all bodies. On entry `axes` has each hinge's angle, afterwards each body's. */
+static inline void tree_place(tree_posture *p, const tree_model *m) {
     p->axes[0] = direction_with(R(1), R(0));
-    p->hinge_x[0] = p->hinge_y[0] = p->com_x[0] = p->com_y[0] = R(0);
+    p->hinge_x[0] = p->hinge_y[0] = p->arm_x[0] = p->arm_y[0] = R(0);
     for (int32_t b = 1; b <= m->body_count; b++) {
         const tree_body *link = &m->body[b];
         const int32_t on = link->parent;
-        direction d = turned[b - 1];
-        p->hinge_x[b] = link->hinge_x_m;
-        p->hinge_y[b] = link->hinge_y_m;
+        p->hinge_x[b] = p->from_x[b] = link->hinge_x_m;
+        p->hinge_y[b] = p->from_y[b] = link->hinge_y_m;
         if (on > 0) {
             const direction a = p->axes[on];
-            p->hinge_x[b] = p->hinge_x[on] + (a.cosine * link->hinge_x_m - a.sine * link->hinge_y_m);
-            p->hinge_y[b] = p->hinge_y[on] + (a.sine * link->hinge_x_m + a.cosine * link->hinge_y_m);
-            d = tree_turned(a, d);
+            p->from_x[b] = a.cosine * link->hinge_x_m - a.sine * link->hinge_y_m;
+            p->from_y[b] = a.sine * link->hinge_x_m + a.cosine * link->hinge_y_m;
+            p->hinge_x[b] = p->hinge_x[on] + p->from_x[b];
+            p->hinge_y[b] = p->hinge_y[on] + p->from_y[b];
+            p->axes[b] = tree_turned(a, p->axes[b]);
         }
-        p->axes[b] = d;
-        p->com_x[b] = p->hinge_x[b] + (d.cosine * link->com_x_m - d.sine * link->com_y_m);
-        p->com_y[b] = p->hinge_y[b] + (d.sine * link->com_x_m + d.cosine * link->com_y_m);
+        const direction d = p->axes[b];
+        p->arm_x[b] = d.cosine * link->com_x_m - d.sine * link->com_y_m;
+        p->arm_y[b] = d.sine * link->com_x_m + d.cosine * link->com_y_m;
     }
 }
 
@@ -119,36 +142,18 @@ static inline void tree_velocities(vector velocity[], const tree_posture *p, con
     for (int32_t b = 1; b <= m->body_count; b++) {
         const int32_t on = m->body[b].parent;
         const real before = velocity[on].z, rate = before + z[2 + b];
-        x[b] = x[on] - before * (p->hinge_y[b] - p->hinge_y[on]);
-        y[b] = y[on] + before * (p->hinge_x[b] - p->hinge_x[on]);
-        velocity[b] =
-            vector_of(x[b] - rate * (p->com_y[b] - p->hinge_y[b]), y[b] + rate * (p->com_x[b] - p->hinge_x[b]), rate);
+        x[b] = x[on] - before * p->from_y[b];
+        y[b] = y[on] + before * p->from_x[b];
+        velocity[b] = vector_of(x[b] - rate * p->arm_y[b], y[b] + rate * p->arm_x[b], rate);
     }
 }
 
-/* Jᵀ of a wrench on each body (force, moment about its centre of mass): leaf to root, about each hinge. */
-static inline void tree_gather(tree_vector *out, const tree_posture *p, const tree_model *m, const vector wrenches[]) {
-    vector sum[TREE_BODIES]; /* about the body's hinge */
-    sum[0] = wrenches[0];
-    for (int32_t b = 1; b <= m->body_count; b++) {
-        const real dx = p->com_x[b] - p->hinge_x[b], dy = p->com_y[b] - p->hinge_y[b];
-        sum[b] = wrenches[b];
-        sum[b].z += dx * wrenches[b].y - dy * wrenches[b].x;
-    }
-    for (int32_t b = m->body_count; b >= 1; b--) {
-        const int32_t on = m->body[b].parent;
-        const real dx = p->hinge_x[b] - p->hinge_x[on], dy = p->hinge_y[b] - p->hinge_y[on];
-        out->hinge[b - 1] = sum[b].z;
-        sum[on] = plus(sum[on], vector_of(sum[b].x, sum[b].y, sum[b].z + (dx * sum[b].y - dy * sum[b].x)));
-    }
-    out->base = sum[0];
-}
+/* ----------------------------------------------------------------------- mass matrix and momenta -- */
 
-/* ------------------------------------------------------------------------------ the mass matrix -- */
-
-/* Mass, first moment and inertia of a body and all that hangs on it, about its hinge. */
+/* Mass, first moment and inertia of a body and all that hangs on it, and their momentum: about its hinge. */
 typedef struct tree_moments {
     real mass, x, y, inertia;
+    vector momentum;
 } tree_moments;
 
 static inline void tree_node_of(tree_row *node, const tree_posture *p, const tree_body *link, int32_t b,
@@ -162,25 +167,37 @@ static inline void tree_node_of(tree_row *node, const tree_posture *p, const tre
     node->along[link->depth - 1] = c->inertia + link->padding_kgm2;
 }
 
-static inline void tree_mass(tree_matrix *out, const tree_posture *p, const tree_model *m) {
+static inline void tree_moments_of(tree_moments *c, const tree_body *link, real x, real y, vector momentum) {
+    c->mass = link->mass_kg;
+    c->x = link->mass_kg * x;
+    c->y = link->mass_kg * y;
+    c->inertia = link->yaw_inertia_kgm2 + (c->x * x + c->y * y);
+    c->momentum = momentum;
+    c->momentum.z += x * momentum.y - y * momentum.x;
+}
+
+/* Adds what hangs on a hinge at (x, y) from the hinge before it. */
+static inline void tree_hang(tree_moments *on, const tree_moments *c, real x, real y) {
+    on->mass += c->mass;
+    on->inertia += c->inertia + R(2) * (x * c->x + y * c->y) + c->mass * (x * x + y * y);
+    on->x += c->x + c->mass * x;
+    on->y += c->y + c->mass * y;
+    on->momentum = plus(on->momentum, c->momentum);
+    on->momentum.z += x * c->momentum.y - y * c->momentum.x;
+}
+
+/* M, and Jᵀ of the bodies' momenta (linear, and angular about the centre of mass): leaf to root, about each hinge. */
+static inline void tree_gather(tree_matrix *out, tree_vector *momentum, const tree_posture *p, const tree_model *m,
+                               const vector momenta[]) {
     tree_moments c[TREE_BODIES];
-    for (int32_t b = 0; b <= m->body_count; b++) {
-        const tree_body *link = &m->body[b];
-        const real x = p->com_x[b] - p->hinge_x[b], y = p->com_y[b] - p->hinge_y[b];
-        c[b].mass = link->mass_kg;
-        c[b].x = link->mass_kg * x;
-        c[b].y = link->mass_kg * y;
-        c[b].inertia = link->yaw_inertia_kgm2 + (c[b].x * x + c[b].y * y);
-    }
+    for (int32_t b = 0; b <= m->body_count; b++)
+        tree_moments_of(&c[b], &m->body[b], p->arm_x[b], p->arm_y[b], momenta[b]);
     for (int32_t b = m->body_count; b >= 1; b--) {
-        const int32_t on = m->body[b].parent;
-        const real dx = p->hinge_x[b] - p->hinge_x[on], dy = p->hinge_y[b] - p->hinge_y[on];
         tree_node_of(&out->node[b - 1], p, &m->body[b], b, &c[b]);
-        c[on].inertia += c[b].inertia + R(2) * (dx * c[b].x + dy * c[b].y) + c[b].mass * (dx * dx + dy * dy);
-        c[on].x += c[b].x + c[b].mass * dx;
-        c[on].y += c[b].y + c[b].mass * dy;
-        c[on].mass += c[b].mass;
+        momentum->hinge[b - 1] = c[b].momentum.z;
+        tree_hang(&c[m->body[b].parent], &c[b], p->from_x[b], p->from_y[b]);
     }
+    momentum->base = c[0].momentum;
     out->xx = out->yy = c[0].mass;
     out->xy = R(0);
     out->xz = -c[0].y;

@@ -12,50 +12,27 @@
 
 /* --------------------------------------------------------------------------------------- the search -- */
 
-/* Twice the energy of the motion without contacts and elements but with what drives them; NaN where a limit is. */
-static real tree_free_energy(const tree_problem *p) {
-    real energy = tree_square(&p->free, p->m->body_count);
-    for (int32_t i = 0; i < p->contact_count; i++) {
-        const friction_load *l = &p->contact[i].load;
-        const real inertia = p->contact[i].wheel->inertia_kgm2, push = inertia * l->free_speed + drive_at(l, R(0));
-        const real slope = magnitude(l->drive) < l->drive_limit ? l->drive_slope : R(0);
-        energy += push * push / (inertia + l->viscous + slope);
-        energy += zero_if_finite(l->viscous) + zero_if_finite(l->drive_slope);
-        energy += zero_if_finite(l->grip) + zero_if_finite(l->axle) + zero_if_finite(l->drive_limit);
-    }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        const tree_element *e = &p->element[i];
-        energy += zero_if_finite(e->target) + zero_if_finite(e->compliance) + zero_if_finite(e->mobility);
-        if (e->compliance > R(0) && e->high < LACONIC_REAL_MAX) {
-            const real q = cut(e->target / e->compliance, e->high);
-            energy += q * q * e->mobility / (R(1) + e->mobility / e->compliance);
-        } else if (tree_unbounded(e)) {
-            energy += e->target * e->target / e->mobility;
-        }
-    }
-    return energy;
-}
-
 /* Contacts and elements that hold each other with many times the free motion would drown the speeds in rounding. */
-static void tree_forget_stress(tree_problem *p) {
+RARE void tree_forget_stress(tree_problem *p) {
+    const real most = MOST_STRESS * p->scale;
     for (int32_t i = 0; i < p->contact_count; i++) {
         real *q = p->contact[i].impulse;
-        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > MOST_STRESS * p->scale) q[0] = q[1] = R(0);
+        if ((q[0] * q[0] + q[1] * q[1]) * p->contact[i].mobility > most) q[0] = q[1] = R(0);
     }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        tree_element *e = &p->element[i];
-        if (e->q * e->q * e->mobility > MOST_STRESS * p->scale) e->q = R(0);
+    for (int32_t i = 0; i < p->bundle_count; i++) {
+        const tree_bundle *b = &p->bundle[i];
+        for (tree_element *e = b->first; e < b->end; e++)
+            if (e->q * e->q * b->mobility > most) e->q = R(0);
     }
 }
 
 void laconic_tree_follow(tree_problem *p) {
-    p->nu.base = p->free.base;
-    for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = p->free.hinge[j];
+    p->nu = p->free;
     laconic_tree_take_forces(&p->nu, p);
+    laconic_tree_look(p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         tree_contact *c = &p->contact[i];
-        const real push = c->wheel->inertia_kgm2 * c->load.free_speed + c->wheel->rim[0] * c->impulse[0] +
-                          c->wheel->rim[1] * c->impulse[1];
+        const real push = c->push + c->wheel->rim[0] * c->impulse[0] + c->wheel->rim[1] * c->impulse[1];
         c->speed = turning_of(c->wheel->inertia_kgm2, &c->load, R(0), c->load.axle, push).speed;
     }
 }
@@ -64,15 +41,21 @@ static void tree_rest(tree_problem *p) {
     p->nu.base = none;
     for (int32_t j = 0; j < p->m->body_count; j++) p->nu.hinge[j] = R(0);
     for (int32_t i = 0; i < p->contact_count; i++) p->contact[i].speed = R(0);
+    laconic_tree_look(p);
 }
 
-static void tree_snap(tree_problem *p) {
+RARE void tree_snap_slow(tree_problem *p, real most) {
     real energy = tree_square(&p->nu, p->m->body_count);
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
         energy += c->wheel->inertia_kgm2 * c->speed * c->speed;
     }
-    if (energy <= SNAP * SNAP * p->scale) tree_rest(p);
+    if (energy <= most) tree_rest(p);
+}
+
+static void tree_snap(tree_problem *p) {
+    const real most = SNAP * SNAP * p->scale;
+    if (square(p->nu.base) <= most) tree_snap_slow(p, most);
 }
 
 static real tree_imbalance_square(const tree_problem *p) {
@@ -87,15 +70,16 @@ static bool tree_is_solved(const tree_problem *p, real residual, real times) {
 }
 
 /* All that rounding leaves to find. */
-static bool tree_is_resolved(tree_search *at) {
-    tree_problem *p = at->p;
-    real stress = R(0), residual = laconic_tree_see(at);
+static bool tree_is_resolved(tree_problem *p) {
+    real stress = R(0), residual = laconic_tree_see(p);
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
         stress += (c->impulse[0] * c->impulse[0] + c->impulse[1] * c->impulse[1]) * c->mobility;
-        residual -= at->sight[i].firm;
+        residual -= c->sight.firm;
     }
-    for (int32_t i = 0; i < p->element_count; i++) stress += p->element[i].q * p->element[i].q * p->element[i].mobility;
+    for (int32_t i = 0; i < p->bundle_count; i++)
+        for (const tree_element *e = p->bundle[i].first; e < p->bundle[i].end; e++)
+            stress += e->q * e->q * p->bundle[i].mobility;
     return residual + tree_imbalance_square(p) <= RESOLVED * RESOLVED * p->scale + ROUNDED * ROUNDED * stress;
 }
 
@@ -120,6 +104,7 @@ static void tree_go_back(tree_problem *p, const tree_kept *kept) {
         for (int m = 0; m < 2; m++) p->contact[i].impulse[m] = kept->impulse[i][m];
     }
     for (int32_t i = 0; i < p->element_count; i++) p->element[i].q = kept->q[i];
+    laconic_tree_look(p);
 }
 
 /* How far the contact's impulse can grow by such a change until it is at the border of its grip. */
@@ -146,26 +131,27 @@ static real tree_change(const tree_problem *p, const tree_kept *from, const tree
             const real off = to->impulse[i][m] - from->impulse[i][m] - share * was;
             sum += off * off * p->contact[i].mobility;
         }
-    for (int32_t i = 0; i < p->element_count; i++) {
-        const real off = to->q[i] - from->q[i] - share * (from->q[i] - less->q[i]);
-        sum += off * off * p->element[i].mobility;
-    }
+    for (int32_t i = 0; i < p->bundle_count; i++)
+        for (const tree_element *e = p->bundle[i].first; e < p->bundle[i].end; e++) {
+            const int32_t j = (int32_t)(e - p->element);
+            const real off = to->q[j] - from->q[j] - share * (from->q[j] - less->q[j]);
+            sum += off * off * p->bundle[i].mobility;
+        }
     return sum;
 }
 
 /* How often the last change can be added until something is at its bound. */
-static real tree_least_reach(const tree_search *at, const tree_kept *before) {
-    const tree_problem *p = at->p;
+static real tree_least_reach(const tree_problem *p, const tree_kept *before) {
     real reach = LACONIC_REAL_MAX;
     for (int32_t i = 0; i < p->contact_count; i++) {
         const tree_contact *c = &p->contact[i];
         const real change[2] = {c->impulse[0] - before->impulse[i][0], c->impulse[1] - before->impulse[i][1]};
-        const real here = at->sight[i].length > R(0) ? LACONIC_REAL_MAX : tree_reach(c, change);
+        const real here = c->sight.length > R(0) ? LACONIC_REAL_MAX : tree_reach(c, change);
         if (here < reach) reach = here;
     }
     for (int32_t i = 0; i < p->element_count; i++) {
         const tree_element *e = &p->element[i];
-        if (!(at->element[i].stiffness > R(0))) continue;
+        if (!(e->law_stiffness > R(0))) continue;
         const real here = tree_element_reach(e, e->q - before->q[i]);
         if (here < reach) reach = here;
     }
@@ -176,19 +162,18 @@ static real tree_least_reach(const tree_search *at, const tree_kept *before) {
  * not quite in line. Each pass then stresses them against each other by as little more, until the weakest slips: far
  * too many passes. Goes there at once, along the change of a pass, if that of the next is the same: rounding errors
  * would stress them in vain. Returns false where nothing gives way. */
-RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
-    tree_problem *p = at->p;
+RARE bool tree_stress_to_slip(tree_problem *p, int32_t *passes) {
     tree_kept first, second, now;
     tree_keep(&first, p);
-    laconic_tree_exact_pass(at);
+    laconic_tree_exact_pass(p);
     tree_keep(&second, p);
-    (void)laconic_tree_see(at);
-    laconic_tree_exact_pass(at);
+    (void)laconic_tree_see(p);
+    laconic_tree_exact_pass(p);
     tree_keep(&now, p);
     *passes += 2;
     if (tree_change(p, &second, &now, &first, R(1)) > TREE_SAME * tree_change(p, &second, &now, &first, R(0)))
         return false;
-    const real reach = tree_least_reach(at, &second);
+    const real reach = tree_least_reach(p, &second);
     if (!(reach < TREE_FARTHEST)) return false;
     for (int32_t i = 0; i < p->contact_count; i++)
         for (int m = 0; m < 2; m++)
@@ -197,42 +182,41 @@ RARE bool tree_stress_to_slip(tree_search *at, int32_t *passes) {
     return true;
 }
 
-static bool tree_pass_exactly(tree_search *at, int32_t most, int32_t *passes) {
+static bool tree_pass_exactly(tree_problem *p, int32_t most, int32_t *passes) {
     real before = LACONIC_REAL_MAX;
     int32_t stresses = 0;
     for (int32_t pass = 0;; pass++) {
-        const real residual = laconic_tree_see(at);
+        const real residual = laconic_tree_see(p);
         ++*passes;
-        if (tree_is_solved(at->p, residual, R(1))) return true;
+        if (tree_is_solved(p, residual, R(1))) return true;
         const bool stalls = pass > 1 && residual > WORTH_IT * before;
-        if (stalls && tree_is_solved(at->p, residual, TREE_NEARLY)) return true;
+        if (stalls && tree_is_solved(p, residual, TREE_NEARLY)) return true;
         before = residual;
-        if (stalls && stresses < TREE_MOST_STRESSES && residual <= TREE_ALMOST * TREE_ALMOST * at->p->scale &&
-            tree_stress_to_slip(at, passes)) {
+        if (stalls && stresses < TREE_MOST_STRESSES && residual <= TREE_ALMOST * TREE_ALMOST * p->scale &&
+            tree_stress_to_slip(p, passes)) {
             stresses++;
             pass = 0;
             continue;
         }
         if (pass == most || stalls) return false;
-        laconic_tree_exact_pass(at);
+        laconic_tree_exact_pass(p);
     }
 }
 
 /* Passes along the central path, and from time to time exact ones: they finish at once where they converge. */
-RARE bool tree_search_along_path(tree_search *at, int32_t *passes) {
+RARE bool tree_search_along_path(tree_problem *p, int32_t *passes) {
     tree_path path;
     tree_kept kept;
-    at->p->penalty = PENALTY; /* rounding: contacts that hold each other may need it */
-    for (int32_t i = 0; i < at->p->element_count; i++) laconic_tree_stiffen(&at->p->element[i], PENALTY);
-    laconic_tree_start_path(at->p, &path);
+    laconic_tree_stiffen(p, PENALTY); /* rounding: contacts that hold each other may need it */
+    laconic_tree_start_path(p, &path);
     for (int32_t ahead = FIRST_AHEAD; *passes + ahead + TRIED + 1 <= FRICTION_MOST_PASSES; ahead = AHEAD) {
-        for (int32_t pass = 0; pass < ahead; pass++) laconic_tree_follow_path(at->p, &path);
+        for (int32_t pass = 0; pass < ahead; pass++) laconic_tree_follow_path(p, &path);
         *passes += ahead;
-        tree_keep(&kept, at->p);
-        if (tree_pass_exactly(at, TRIED, passes)) return true;
-        if (ahead == AHEAD && tree_is_solved(at->p, laconic_tree_see(at), CLOSE)) return true;
-        tree_go_back(at->p, &kept);
-        if (ahead == AHEAD && tree_is_resolved(at)) return true;
+        tree_keep(&kept, p);
+        if (tree_pass_exactly(p, TRIED, passes)) return true;
+        if (ahead == AHEAD && tree_is_solved(p, laconic_tree_see(p), CLOSE)) return true;
+        tree_go_back(p, &kept);
+        if (ahead == AHEAD && tree_is_resolved(p)) return true;
     }
     return false;
 }
@@ -246,15 +230,12 @@ RARE int32_t tree_nothing(tree_problem *p) {
 }
 
 int32_t laconic_tree_solve(tree_problem *p) {
-    tree_search at;
     int32_t passes = 0;
-    at.p = p;
-    p->scale = tree_free_energy(p);
     if (!is_finite(p->scale)) return 0;
     if (p->scale < SMALLEST_ENERGY) return tree_nothing(p);
-    tree_forget_stress(p);
+    if (p->stress > MOST_STRESS * p->scale) tree_forget_stress(p);
     laconic_tree_follow(p);
-    if (!tree_pass_exactly(&at, EXACT_PASSES, &passes) && !tree_search_along_path(&at, &passes)) return 0;
+    if (!tree_pass_exactly(p, EXACT_PASSES, &passes) && !tree_search_along_path(p, &passes)) return 0;
     tree_snap(p);
     return passes;
 }

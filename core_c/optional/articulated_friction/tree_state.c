@@ -27,10 +27,8 @@ static laconic_status tree_check_start(const tree_model *m, const laconic_tree_s
 }
 
 static void tree_posture_of(tree_posture *at, const tree_model *m, const tree_state *s) {
-    direction turned[TREE_HINGES];
-    turned[0] = direction_with(R(1), R(0));
-    for (int32_t b = 0; b < m->body_count; b++) turned[b] = direction_of_binary_angle(s->hinge[b].fraction);
-    tree_place(at, m, turned);
+    for (int32_t b = 0; b < m->body_count; b++) at->axes[b + 1] = direction_of_binary_angle(s->hinge[b].fraction);
+    tree_place(at, m);
 }
 
 /* Velocity of a wheel's contact point along u and across it at z. */

@@ -27,10 +27,10 @@ typedef struct tree_loads {
     real statics_N[LACONIC_TREE_POINTS]; /* below 0 where lifted, else what is carried */
 } tree_loads;
 
-/* The elements of a hinge (-1: none; stop: the high one, the low one follows), and a drive without limit, whose torque
+/* The elements of a hinge (NULL: none; stop: the high one, the low one follows), and a drive without limit, whose torque
  * is torque − slope ψ'. */
 typedef struct tree_hinge_part {
-    int32_t drive, dry, stop;
+    const tree_element *drive, *dry, *stop;
     real torque_Nm, slope_Nms;
 } tree_hinge_part;
 
@@ -41,15 +41,16 @@ typedef struct tree_part {
     tree_posture at;
     direction end;               /* heading of body 0 at the end; a local would cost 120 instructions more */
     vector carried[TREE_BODIES]; /* the bodies' velocities, in the axes at the end               */
+    int32_t pulled;              /* the last body that is pulled                                 */
     vector pull[TREE_BODIES];    /* forces and moments from outside, axes at the end             */
     real ahead[TREE_HINGES];     /* ψ^ of the hinges with springs, stops or servos               */
     tree_place_of_wheel place[TREE_WHEELS];
     tree_loads loads;
-    real command_V[LACONIC_TREE_AXES], terminal_V;
+    real terminal_V;
     tree_factor factor;
     tree_problem problem;
     tree_hinge_part hinge[TREE_HINGES];
-    int32_t scrub[TREE_WHEELS]; /* elements; -1: none                                            */
+    const tree_element *scrub[TREE_WHEELS]; /* NULL: none                                        */
     real z[LACONIC_TREE_SPEEDS];
     int32_t passes;
 } tree_part;
@@ -57,10 +58,20 @@ typedef struct tree_part {
 /* ------------------------------------------------------------------------------------- drives -- */
 
 /* In Nm. `terminal_V` as for within_supply(). */
-motor_state laconic_tree_motor_at(const tree_model *m, int32_t axis, real command_V, real speed, real terminal_V);
+static inline motor_state tree_motor_at(const laconic_tree_motor *a, real command_V, real speed, real terminal_V) {
+    return motor_state_of(a->circuit, a->gain_Nm_per_V, a->back_emf_Nms, a->torque_limit_Nm, a->ampere_per_Nm,
+                          command_V, speed, terminal_V);
+}
+
+/* What a loop has set is added to the voltage of a hinge. */
+static inline real tree_hinge_command(const tree_model *m, const laconic_tree_input *in, const tree_state *s,
+                                      int32_t b) {
+    const real volts = in->hinged.hinge_voltage_V[b - 1];
+    return m->body[b].sampled ? volts + s->control_command[b - 1] : volts;
+}
 
 /* Voltage of the supply under the motors' currents at the speeds of the state; −1 without a supply. */
-real laconic_tree_terminal_voltage(const tree_model *m, const real command_V[], const tree_state *state);
+real laconic_tree_terminal_voltage(const tree_model *m, const laconic_tree_input *in, const tree_state *state);
 
 /* Lets loops and sampled servos look where it is time. Refuses STEP_DOES_NOT_FIT. */
 laconic_status laconic_tree_control(const tree_model *m, real step_s, tree_state *state, const laconic_tree_input *in,
@@ -82,6 +93,12 @@ laconic_status laconic_tree_accept(const tree_part *p, tree_state *state);
 
 static inline void tree_place_wheel(tree_place_of_wheel *w, const tree_posture *at, const laconic_tree_rim *rim) {
     const direction d = at->axes[rim->body];
+    if (rim->body == 0) { /* its axes are these */
+        w->x = rim->x_m;
+        w->y = rim->y_m;
+        w->pull = direction_with(rim->pull[0], rim->pull[1]);
+        return;
+    }
     w->x = at->hinge_x[rim->body] + (d.cosine * rim->x_m - d.sine * rim->y_m);
     w->y = at->hinge_y[rim->body] + (d.sine * rim->x_m + d.cosine * rim->y_m);
     w->pull = direction_with(d.cosine * rim->pull[0] - d.sine * rim->pull[1],

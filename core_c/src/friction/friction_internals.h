@@ -10,10 +10,8 @@
  * contacts that many times nearer in each pass, and takes as many digits of the sums. */
 #ifdef LACONIC_SINGLE
 #define PENALTY R(300)
-#define HERON_ROUNDS 3
 #else
 #define PENALTY R(1e5)
-#define HERON_ROUNDS 4
 #endif
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
@@ -56,6 +54,8 @@
 /* 1/x, or 0 where there is nothing to act on. */
 static inline real inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
+static inline real heron(real guess, real x) { return R(0.5) * (guess + x / guess); }
+
 /* √x for x from the least normal number on, some units in the last place; below, a number below 1e-150 (1e-18); not for
  * infinity. It costs a quarter of laconic_root(), which does not use IEEE's layout: half the exponent's bits are the
  * guess, 3.5 % off at most, and each of Heron's rounds squares that: 6e-4, 2e-7, 2e-14, then rounding. */
@@ -66,15 +66,15 @@ static inline real quick_root(real x) {
         uint32_t bits;
     } guess = {x};
     guess.bits = (guess.bits >> 1) + 0x1fbb4f2eU;
+    return heron(heron(heron(guess.number, x), x), x);
 #else
     union {
         real number;
         uint64_t bits;
     } guess = {x};
     guess.bits = (guess.bits >> 1) + 0x1ff769e5b00908bcU;
+    return heron(heron(heron(heron(guess.number, x), x), x), x);
 #endif
-    for (int round = 0; round < HERON_ROUNDS; round++) guess.number = R(0.5) * (guess.number + x / guess.number);
-    return guess.number;
 }
 
 /* The problem and where the search for its solution stands. */

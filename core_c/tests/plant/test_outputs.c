@@ -1,5 +1,4 @@
 /* Tests of outputs.c: velocities, pose, wheels, torques and energy. */
-#include "derived.h"
 #include "methods.h"
 #include "stack.h"
 #include "step_chain.h"

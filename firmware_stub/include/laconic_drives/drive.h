@@ -105,8 +105,8 @@ void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_setting
 laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s);
 
 /* In place of laconic_drive_act for a steering axis whose angle follows a command, whatever torque that takes: the rate
- * of the axis, which is the set speed of speed and position control within the limit, and 0 in every other mode. Sets
- * the fault TARGET. */
+ * of the axis, which is the set speed of speed and position control within the limit; 0 in every other mode, and while
+ * a brake holds it. Sets the fault TARGET. */
 laconic_real laconic_drive_follow(laconic_wheel_drive *drive);
 
 /* Takes the wheel's motion in the step just done: how far it turned, and its speed at the end. A lost encoder shows

@@ -10,6 +10,9 @@
 #if LACONIC_NODE_WITH_HINGES
 #include "laconic/articulated.h"
 #endif
+#if LACONIC_NODE_WITH_SLIP
+#include "laconic/articulated_friction.h"
+#endif
 
 /* As after power-up, from a plan that laconic_drive_plan_check() has accepted: every drive is off at count 0 and
  * measures its wheel's speed. `axes`: memory for protocol->axis_bytes of each drive, aligned to 8 bytes. */
@@ -41,6 +44,26 @@ void laconic_drives_act_with_hinges(laconic_drives *drives, const laconic_articu
 void laconic_drives_measure_with_hinges(laconic_drives *drives, const laconic_articulated_model *model,
                                         const laconic_articulated_state *before,
                                         const laconic_articulated_state *after);
+#endif
+
+#if LACONIC_NODE_WITH_SLIP
+/* The same on ground with friction. laconic_drives_act_with_hinges serves there, too: of its model it reads the number
+ * of wheels and which hinges are prescribed. The step holds the input of the end. */
+void laconic_drives_start_slipping(laconic_drives *drives, const laconic_drive_plan *plan,
+                                   const laconic_drive_protocol *protocol, void *axes, const laconic_tree_model *model,
+                                   const laconic_tree_state *state, laconic_real step_s, uint32_t now_us);
+
+void laconic_drives_measure_slipping(laconic_drives *drives, const laconic_tree_model *model,
+                                     const laconic_tree_state *before, const laconic_tree_state *after);
+
+/* Brakes by order are dry friction that no drive and no ground overcomes. Exchanges the dry friction of each axle and
+ * hinge that such a brake holds with `other_Nm` of its drive: a step stands between two calls, of which the first one
+ * gets laconic_drives_brakes and the second one what the first one left. */
+void laconic_drives_exchange_dry_friction(const laconic_drives *drives, laconic_tree_model *model,
+                                          laconic_real other_Nm[LACONIC_DRIVE_AXES]);
+
+/* The torque of each drive's brake by order. False iff there is none. */
+bool laconic_drives_brakes(const laconic_drives *drives, laconic_real brake_Nm[LACONIC_DRIVE_AXES]);
 #endif
 
 /* The next frame of the protocol; false iff there is none. */

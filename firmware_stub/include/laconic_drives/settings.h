@@ -14,6 +14,12 @@
 #if LACONIC_NODE_WITH_DRIVES && (!LACONIC_WITH_AXLE_TORQUE || !LACONIC_WITH_WHEEL_ANGLES)
 #error "laconic: drives need LACONIC_WITH_AXLE_TORQUE and LACONIC_WITH_WHEEL_ANGLES, or set LACONIC_NODE_WITH_DRIVES=0"
 #endif
+/* 1: vehicles with hinges also on ground with friction; links the core's articulated_friction. It is nothing in a build
+ * without hinges or without friction. */
+#if !defined LACONIC_NODE_WITH_SLIP || !LACONIC_NODE_WITH_HINGES || !LACONIC_WITH_FRICTION
+#undef LACONIC_NODE_WITH_SLIP
+#define LACONIC_NODE_WITH_SLIP 0
+#endif
 #ifndef LACONIC_NODE_DRIVES_ONLY
 #define LACONIC_NODE_DRIVES_ONLY 0 /* 1 leaves out lockstep, free run and the frames that move the vehicle in them */
 #endif

@@ -5,12 +5,6 @@
 #include "laconic/laconic.h"
 #include "laconic_drives/settings.h"
 #include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS, LACONIC_NODE_WITH_HINGES */
-/* 1: vehicles with hinges also on ground with friction; links the core's articulated_friction. It is nothing in a build
- * without hinges or without friction. */
-#if !defined LACONIC_NODE_WITH_SLIP || !LACONIC_NODE_WITH_HINGES || !LACONIC_WITH_FRICTION
-#undef LACONIC_NODE_WITH_SLIP
-#define LACONIC_NODE_WITH_SLIP 0
-#endif
 #if LACONIC_NODE_WITH_HINGES
 #include "laconic/articulated.h"
 #if LACONIC_NODE_WITH_SLIP

@@ -82,10 +82,9 @@ static void wheels_of_hinges_slip_as_in_the_core_under_voltages_and_angles(void)
 
 static void what_ground_with_friction_lacks_is_refused_by_its_field(void) {
     const parameter method = INTEGER(METHOD, 0, 1), coordination = INTEGER(BODY_HINGE, 1, LACONIC_HINGE_COORDINATED);
-    const parameter step = NUMBER(STEP, 0, 0), drives = INTEGER(DRIVE_PROTOCOL, 0, 1);
-    const parameter *wrong[] = {&method, &coordination, &step, &drives};
-    const uint8_t statuses[] = {LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_COORDINATED_SLIPS, LACONIC_NOT_POSITIVE,
-                                LACONIC_WIRE_STATUS_NOT_SUPPORTED};
+    const parameter step = NUMBER(STEP, 0, 0);
+    const parameter *wrong[] = {&method, &coordination, &step};
+    const uint8_t statuses[] = {LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_COORDINATED_SLIPS, LACONIC_NOT_POSITIVE};
     for (size_t k = 0; k < sizeof statuses; k++) {
         begin_slipping();
         TEST_ASSERT_EQUAL_UINT8(0, send_parameter(wrong[k]));

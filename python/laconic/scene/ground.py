@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 from laconic.core import load
 from laconic.core.fields import OF_GROUND
 from laconic.errors import BadInput
-from laconic.scene.fields import read_field
 from laconic.scene.hinges import check_without_hinges
 from laconic.scene.keys import MOTOR_CIRCUITS, key_of, read_choice
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_field
 
 if TYPE_CHECKING:
     from laconic.scene.scene import Scene

@@ -15,7 +15,6 @@ from laconic.errors import LONGEST_NAME, nearest_of, shown
 from laconic.scene.base import read_base, read_frc
 from laconic.scene.drives import read_ardupilot, read_drives, read_speed_controller
 from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
-from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground, slips
 from laconic.scene.hinge_friction import read_contact
 from laconic.scene.hinge_signals import (
@@ -32,7 +31,7 @@ from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.sensors import NO_SENSORS, SensorTables, read_sensors
 from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
 from laconic.scene.step_choice import AUTO, LARGEST_TOLERANCE
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_field
 
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
@@ -101,7 +100,7 @@ def read_parts_with_hinges(top: Table, parts: dict[str, Any], hung: Hung, reals:
     parts["ardupilot"] = read_ardupilot(
         top.table("ardupilot"), len(vehicle["wheel"]), list(known)) if top.has("ardupilot") else None
     parts["sensors"] = NO_SENSORS
-    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges)
+    parts["rig"] = read_rig(top.table("rig"), vehicle["wheel"], hinges, slips(vehicle))
     top.done()
     return parts | {"in_degrees": frozenset(top.in_degrees), "hinges": hinges, "wheel_places": hung.wheel_places}
 
@@ -360,12 +359,13 @@ def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str]
     return tuple(signals)
 
 
-def read_rig(table: Table, wheels: Sequence[dict[str, Any]], hinges: Sequence[Hinge] = ()) -> dict[str, Any]:
+def read_rig(table: Table, wheels: Sequence[dict[str, Any]], hinges: Sequence[Hinge] = (),
+             slips: bool = False) -> dict[str, Any]:
     """`[rig]`: the first CAN identifier, the frames to use, and the drives of a vehicle that is played."""
     id_base = table.whole("id_base", None)
     if id_base is not None and not 0 <= id_base <= 0x7FF:
         table.fail("id_base", f"is {id_base}; give an 11-bit identifier, 0 to 0x7FF")
     frames = table.texts("frames", ())
-    drives = read_drives(table.table("drives"), wheels, hinges) if table.has("drives") else None
+    drives = read_drives(table.table("drives"), wheels, hinges, slips) if table.has("drives") else None
     table.done()
     return {"id_base": id_base, "frames": frames, "drives": drives}

@@ -12,9 +12,8 @@ from typing import Any
 from laconic.core import Field, load
 from laconic.core.encoders import A_COUNT, COUNTS, GEAR, NO_ENCODER, WRAP, read_encoders
 from laconic.core.sensors import IMU
-from laconic.scene.fields import read_field
 from laconic.scene.keys import read_number
-from laconic.scene.table import Table
+from laconic.scene.table import Table, read_field
 
 OF_IMU = {"imu_acceleration_m_per_s2": 2, "imu_yaw_rate_rad_per_s": 0}
 OF_ENCODERS = ("encoder_count",)

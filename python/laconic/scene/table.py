@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from laconic.base.text_file import NotText, decoded
+from laconic.core import Field
 from laconic.core.given import is_masked
 from laconic.core.spelling import is_in_degrees
 from laconic.errors import BadInput, cut, nearest_of, reason_of, shown
@@ -298,3 +299,12 @@ def read_map_toml(path: Path) -> Table:
         return read_toml(path, lambda data: decoded(data).text, TWICE)
     except NotText as why:
         raise BadInput(f"{path}: {why}; give a map as TOML text") from None
+
+
+def read_field(table: Table, field: Field, default: Any = ..., *, finite: bool = False) -> Any:
+    """One key of a table by its row in the core's list of fields; the core checks its value."""
+    if field.kind in ("FLAG", "ABSENCE"):
+        return table.flag(field.key, default if default is ... else bool(default))
+    if field.key.endswith("_rad"):
+        return table.angle(field.key.removesuffix("_rad"), default, finite=finite)
+    return table.number(field.key, default, finite=finite)

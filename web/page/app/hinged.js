@@ -188,9 +188,12 @@ export function middle(/** @type {any[]} */ wheels) {
   return [mean("x_m"), mean("y_m")];
 }
 
-/** How far the middle of the coordinated hinges lies ahead of the fixed axle. */
-export function steeringBase(/** @type {Layout} */ { parts, axle }) {
-  const steered = parts.filter(({ hinge }) => hinge?.kind === "coordinated");
+export function isCoordinated(/** @type {Part} */ { hinge }) {
+  return hinge?.kind === "coordinated";
+}
+
+/** How far the middle of the hinges that steer together lies ahead of the fixed axle. */
+export function steeringBase(/** @type {Layout} */ { parts, axle }, steered = parts.filter(isCoordinated)) {
   return steered.reduce((sum, { at }) => sum + at[0], 0) / steered.length - axle.x_m;
 }
 

@@ -1,6 +1,7 @@
 // How a robot with hinges is driven: wanted velocity and steering as voltages and commands of its hinges.
 import { mostVoltage, perWheel } from "./drive.js";
-import { layoutOf, steeringBase } from "./hinged.js";
+import { slips } from "./facts.js";
+import { isCoordinated, layoutOf, steeringBase } from "./hinged.js";
 import { roundDown } from "./texts.js";
 
 const DEGREES = 180 / Math.PI;
@@ -12,6 +13,8 @@ const SETTLED_RAD = 1e-4;
 const MOST_RATE = 1; // rad/s of a hinge without a limit
 const CURVE_S = 2;
 const SMALL = 1e-9;
+const ALIGNED_STEPS = 20; // in which the speed of a wheel grows while its module turns to its direction
+const STEERED = ["prescribed", "motor", "servo"];
 
 /** @typedef {import("./hinged.js").Part} Part */
 /** @typedef {{x: number, y: number, turn: number}} Twist of the body's origin, in body axes */
@@ -25,15 +28,19 @@ export class HingedWay {
     this.parts = this.layout.parts;
     this.volts = mostVoltage(scene);
     this.wheels = this.parts.flatMap((part, of) => part.wheels.map((wheel) => ({ ...wheel, of })));
-    this.coordinated = this.parts.filter(({ hinge }) => hinge?.kind === "coordinated");
+    const own = this.parts.filter(({ hinge }) => STEERED.includes(hinge?.kind)),
+      coordinated = this.parts.filter(isCoordinated);
+    // Where wheels may slip, hinges that turn by themselves can steer together.
+    this.isEach = !coordinated.length && slips(scene) && own.filter(({ parent }) => parent === 0).length > 1;
+    this.together = this.isEach ? own.filter(({ parent }) => parent === 0) : coordinated;
     const hasAxle = this.parts[0].wheels.some(({ kind }) => kind === "fixed") && this.layout.axle.isAcross;
-    this.isSwerve = this.coordinated.length > 0 && !hasAxle;
-    this.steered = this.coordinated.length
-      ? undefined
-      : this.parts.find(({ hinge }) => ["prescribed", "motor", "servo"].includes(hinge?.kind));
-    this.isSteered = !this.isSwerve && Boolean(this.steered || this.coordinated.length);
+    this.isSwerve = this.together.length > 0 && !hasAxle;
+    this.steered = this.together.length ? undefined : own[0];
+    this.isSteered = !this.isSwerve && Boolean(this.steered || this.together.length);
     this.hasMotors = this.wheels.some((wheel) => this.idle(wheel) > 0);
     this.twist = [1, 0, 0];
+    /** @type {number[]} angles to which modules that turn by themselves are commanded */
+    this.aims = this.parts.map(() => 0);
     /** @type {number[]} */
     this.most = [1, 1, 1];
     this.sign = 1;
@@ -78,14 +85,13 @@ export class HingedWay {
     return gain !== 0 && damping > 0 ? gain / damping : 0;
   }
 
-  /** The largest angle of the steering: of coordinated wheels that of one in their middle. */
+  /** The largest angle of the steering: of wheels that steer together that of one in their middle. */
   mostAngle() {
-    const parts = this.coordinated.length ? this.coordinated : [/** @type {Part} */ (this.steered)];
-    const base = this.coordinated.length ? steeringBase(this.layout) : 0;
-    const angles = parts.map(({ at, hinge }) => {
+    if (!this.together.length) return mostOf(/** @type {Part} */ (this.steered).hinge, USUAL_STEERING_RAD);
+    const base = steeringBase(this.layout, this.together);
+    const angles = this.together.map(({ at, hinge }) => {
       const stop = OF_STOPS * Math.min(-hinge.low, hinge.high);
       if (!Number.isFinite(stop)) return USUAL_STEERING_RAD;
-      if (!this.coordinated.length) return stop;
       const ahead = Math.abs(at[0] - this.layout.axle.x_m); // the wheel at the inside turns farthest
       return Math.atan((Math.abs(base) * Math.tan(stop)) / (ahead + Math.abs(at[1]) * Math.tan(stop)));
     });
@@ -97,14 +103,15 @@ export class HingedWay {
   /** Angles of all bodies where the steering is at one, all others straight; those of free bodies are not known. */
   anglesAt(/** @type {number} */ angle) {
     if (this.isSwerve) return this.parts.map((part) => this.directionOf(part, this.twist));
-    if (!this.coordinated.length) return this.parts.map((part) => (part === this.steered ? angle : 0));
-    const curvature = Math.tan(angle) / steeringBase(this.layout),
+    if (!this.together.length) return this.parts.map((part) => (part === this.steered ? angle : 0));
+    const curvature = Math.tan(angle) / steeringBase(this.layout, this.together),
       twist = [1, -this.layout.axle.x_m * curvature, curvature];
     return this.parts.map((part) => this.directionOf(part, twist));
   }
 
-  directionOf(/** @type {Part} */ { hinge, at: [x, y] }, /** @type {number[]} */ [ahead, aside, turn]) {
-    return hinge?.kind === "coordinated" ? Math.atan2(aside + turn * x, ahead - turn * y) : 0;
+  directionOf(/** @type {Part} */ part, /** @type {number[]} */ [ahead, aside, turn]) {
+    const [x, y] = part.at;
+    return this.together.includes(part) ? Math.atan2(aside + turn * x, ahead - turn * y) : 0;
   }
 
   /** Each wheel in the body frame: its place, the way it rolls, and whether something guides it. */
@@ -167,11 +174,13 @@ export class HingedWay {
     const motion = this.isSteered
       ? { x: wanted[0], y: at.y * wanted[0], turn: at.turn * wanted[0] }
       : { ...at, x: wanted[0] };
-    return { ...perWheel("voltage_V", this.voltages(motion, angles)), ...(this.isSteered && this.steering(angle)) };
+    const volts = perWheel("voltage_V", this.voltages(motion, angles));
+    return { ...volts, ...(this.isSteered && this.steering(angle, angles)) };
   }
 
   /** Steered wheels point along the velocity, or against it where that is nearer to where they point now. */
   swerved(/** @type {number[]} */ [x, y, turn]) {
+    if (this.isEach) return this.aimed([x, y, turn]);
     const acting = this.robot.commands.steering_twist ?? this.twist,
       size = this.layout.size;
     if (x !== 0 || y !== 0 || turn !== 0) {
@@ -182,10 +191,54 @@ export class HingedWay {
     return { ...perWheel("voltage_V", volts), ...perWheel("steering_twist", this.twist) };
   }
 
-  /** The command that brings the steering to an angle. @returns {Record<string, number>} */
-  steering(/** @type {number} */ angle) {
-    if (this.coordinated.length) return { steering_curvature_per_m: Math.tan(angle) / steeringBase(this.layout) };
-    const { name, hinge } = /** @type {Part} */ (this.steered);
+  /** Modules that turn by themselves: each to its direction or the opposite one, whichever is nearer. A wheel drives
+   * as far as it points there. @returns {Record<string, number>} */
+  aimed(/** @type {number[]} */ twist) {
+    const now = this.robot.outputs().hinge_angle_rad;
+    if (twist.some((each) => each !== 0))
+      this.aims = this.parts.map((part, k) => this.aimOf(part, twist, now[part.name], this.aims[k]));
+    const volts = this.voltages({ x: twist[0], y: twist[1], turn: twist[2] }, this.aims);
+    for (const { number, of } of this.wheels) {
+      if (!this.together.includes(this.parts[of])) continue;
+      const aligned = Math.cos(this.aims[of] - now[this.parts[of].name]);
+      volts[number] *= Math.max(0, Math.round(ALIGNED_STEPS * aligned) / ALIGNED_STEPS);
+    }
+    return { ...perWheel("voltage_V", volts), ...this.turningEach(this.aims) };
+  }
+
+  /** @returns {number} */
+  aimOf(
+    /** @type {Part} */ part,
+    /** @type {number[]} */ [ahead, aside, turn],
+    /** @type {number} */ now,
+    /** @type {number} */ before,
+  ) {
+    const [x, y] = part.at,
+      [vx, vy] = [ahead - turn * y, aside + turn * x];
+    if (!this.together.includes(part) || Math.hypot(vx, vy) < SMALL) return before;
+    const quarters = Math.round(((part.wheels[0]?.axle_rad ?? -Math.PI / 2) + Math.PI / 2) / (Math.PI / 2)),
+      way = Math.atan2(vy, vx) - (quarters * Math.PI) / 2;
+    const angle = way + Math.PI * Math.round((now - way) / Math.PI),
+      { low, high } = part.hinge;
+    return angle > high ? angle - Math.PI : angle < low ? angle + Math.PI : angle;
+  }
+
+  /** The commands that bring the steering to an angle, or hinges that turn by themselves to theirs.
+   * @returns {Record<string, number>} */
+  steering(/** @type {number} */ angle, /** @type {number[]} */ angles) {
+    if (this.isEach) return this.turningEach(angles);
+    if (this.together.length)
+      return { steering_curvature_per_m: Math.tan(angle) / steeringBase(this.layout, this.together) };
+    return this.turning(/** @type {Part} */ (this.steered), angle);
+  }
+
+  /** @returns {Record<string, number>} */
+  turningEach(/** @type {number[]} */ angles) {
+    return Object.assign({}, ...this.together.map((part) => this.turning(part, angles[this.parts.indexOf(part)])));
+  }
+
+  /** The command that brings one hinge to an angle. @returns {Record<string, number>} */
+  turning(/** @type {Part} */ { name, hinge }, /** @type {number} */ angle) {
     if (this.usesAngle(hinge)) return { [`steering_angle_rad[${name}]`]: angle };
     const left = angle - this.robot.outputs().hinge_angle_rad[name],
       rate = Math.abs(left) < SETTLED_RAD ? 0 : FOLLOWS_PER_S * left;
@@ -239,7 +292,7 @@ export class HingedWay {
 
   hingeKnobs() {
     const inDegreesPerS = { unit: "°/s", scale: DEGREES };
-    if (this.isSwerve)
+    if (this.isSwerve && !this.isEach)
       return ["ahead", "left", "yaw"].map((label, k) => ({
         id: `twist-${k}`,
         label: `Twist ${label}`,
@@ -248,14 +301,15 @@ export class HingedWay {
         usual: this.twist[k],
         ...plainKnob(`steering_twist[${k + 1}]`),
       }));
-    if (this.coordinated.length) return [this.curvatureKnob()];
+    if (this.together.length && !this.isEach) return [this.curvatureKnob()];
+    const usual = this.isSwerve ? Math.PI : USUAL_STEERING_RAD;
     return this.parts.flatMap(({ name, hinge }) => {
       const about = { id: `hinge-${name}`, label: `Hinge ${name}` };
       if (hinge?.kind === "motor" && !hinge.follows)
         return [{ ...about, unit: "V", most: this.hingeVolts(name), ...plainKnob(`hinge_voltage_V[${name}]`) }];
       if (hinge?.kind !== "prescribed" && !hinge?.follows) return [];
       return this.usesAngle(hinge)
-        ? [{ ...about, unit: "°", scale: DEGREES, most: this.mostAngle(), ...plainKnob(`steering_angle_rad[${name}]`) }]
+        ? [{ ...about, unit: "°", scale: DEGREES, most: mostOf(hinge, usual), ...plainKnob(`steering_angle_rad[${name}]`) }]
         : [{ ...about, ...inDegreesPerS, most: mostRate(hinge), ...plainKnob(`steering_rate_rad_per_s[${name}]`) }];
     });
   }
@@ -277,6 +331,7 @@ export class HingedWay {
   /** A curve at half the speed from the start, where errors of methods show. @returns {Record<string, number>} */
   usual() {
     const half = this.most.map((value) => value / 2);
+    if (this.isEach) return this.driven([half[0], 0, 0]);
     if (this.isSwerve || !this.steered || this.steered.hinge.follows) return this.driven(half);
     const { name, hinge } = this.steered,
       volts = perWheel("voltage_V", this.voltages({ x: half[0], y: 0, turn: 0 }, this.anglesAt(0))),
@@ -301,6 +356,12 @@ function shaft(/** @type {any} */ motor) {
     motor_gain_Nm_per_V: (n * motor.torque_constant_Nm_per_A) / ohm,
     motor_damping_Nms: n * n * ((motor.torque_constant_Nm_per_A * motor.back_emf_Vs_per_rad) / ohm + friction),
   };
+}
+
+/** The largest angle of a hinge that a slider gives. */
+function mostOf(/** @type {any} */ { low, high }, /** @type {number} */ usual) {
+  const stop = OF_STOPS * Math.min(-low, high);
+  return Number.isFinite(stop) ? roundDown(stop * DEGREES) / DEGREES : usual;
 }
 
 function mostRate(/** @type {any} */ { rateLimit }) {

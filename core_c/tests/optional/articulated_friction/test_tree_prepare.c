@@ -120,6 +120,13 @@ static void a_start_beyond_a_stop_is_refused(void) {
     start.hinged.hinge_angle_rad[0] = REAL(-0.8);
     ASSERT_STATUS(LACONIC_BELOW_LIMIT, laconic_tree_state_set(&s, &m, &start, &refusal));
     start.hinged.hinge_angle_rad[0] = 0;
+    start.hinged.yaw_rate_rad_per_s = REAL(EITHER(1e18, 1e7)); /* of a body whose hinge is far out */
+    laconic_tree_vehicle far_out = tree_casters();
+    far_out.hinged.body[0].hinge_x_m = REAL(EITHER(1e150, 1e17));
+    const laconic_tree_model too_large = tree_model(far_out);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_tree_state_set(&s, &too_large, &start, &refusal));
+    TEST_ASSERT_EQUAL(FIELD(START_VELOCITY), refusal.field);
+    start.hinged.yaw_rate_rad_per_s = 0;
     start.hinged.velocity_m_per_s[1] = INFINITE;
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_tree_state_set(&s, &m, &start, &refusal));
     TEST_ASSERT_EQUAL(FIELD(START_VELOCITY), refusal.field);

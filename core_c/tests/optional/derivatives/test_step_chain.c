@@ -1,6 +1,6 @@
 /* Tests of tangent, adjoint and Jacobian where only a part is asked for or acts: a gradient without others, a slope
  * along one axis, wheels that are not there. test_step_derivatives.c compares with differences of the step. */
-#include "derived.h"
+#include "methods.h"
 #include "stiff.h"
 
 #define CLOSE EITHER(1e-12, 1e-4)

@@ -11,10 +11,10 @@ from pathlib import Path
 import can
 import pytest
 
-from laconic.can.play.fault_kinds import ORDERS
 from laconic.can.play.listener import ListeningBus
 from laconic.can.play.options import PlayOptions
 from laconic.can.play.orders import Orders
+from laconic.can.play.protocols import ORDERS
 from laconic.can.play.senders import Senders
 from laconic.can.play.session import play
 from laconic.can.play.settings import drive_settings

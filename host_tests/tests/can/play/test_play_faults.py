@@ -9,9 +9,9 @@ import can
 import pytest
 
 from laconic.can.play.can_fail import drives_can_fail
-from laconic.can.play.fault_kinds import KINDS
 from laconic.can.play.faults import DriveFault, Saboteur, read_faults
 from laconic.can.play.options import PlayOptions
+from laconic.can.play.protocols import KINDS
 from laconic.can.play.settings import drive_settings
 from laconic.cli.main import run
 from laconic.scene import read_scene

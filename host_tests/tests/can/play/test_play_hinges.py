@@ -12,17 +12,19 @@ import can
 import numpy as np
 import pytest
 from canopen.profiles.p402 import BaseNode402
-from canopen_bus import played_on_canopen
+from canopen_bus import Played, played_on_canopen
 
 from laconic import build_scene
 from laconic.can.play.options import PlayOptions
 from laconic.can.play.places import place_of
+from laconic.can.play.protocols import ORDERS, STALL
 from laconic.can.play.settings import drive_settings
 from laconic.can.play.vehicle import played as without_motors
+from laconic.can.rig.boards import why_no_emulation
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.pictures.views.recorded import Recorded
-from laconic.scene import read_scene
+from laconic.scene import Scene, read_scene
 from laconic.scene.scene_tables import scene_tables
 from play_support import played
 
@@ -123,6 +125,137 @@ def test_odrive_positions_steer_a_tugger_whose_axis_follows_commands(real: str) 
     assert judgement.figures["end_heading_rad"] > 0.02
 
 
+# ---- ground with friction
+
+SERVO = {"servo_gain_Nm_per_rad": 20.0, "servo_damping_Nms": 0.5, "servo_limit_Nm": 5.0}
+MODULE = {"kind": "fixed", "mass_kg": 1.0, "yaw_inertia_kgm2": 0.002}
+PLACES = {"front_left": (0.2, 0.2), "front_right": (0.2, -0.2), "rear_left": (-0.2, 0.2), "rear_right": (-0.2, -0.2)}
+VEHICLE = {"mass_kg": 20.0, "yaw_inertia_kgm2": 1.0, "com_z_m": 0.12, "wheel_radius_m": 0.05,
+           "wheel_inertia_kgm2": 6e-4, "motor_gain_Nm_per_V": 0.35, "motor_damping_Nms": 0.2}
+
+
+def swerve(kind: str = "servo", rig: dict[str, Any] | None = None, real: str = "double", **hinge: Any) -> Scene:
+    """Four modules on ground with friction; `kind` and `hinge`: what turns each."""
+    own = hinge or {"servo": SERVO, "coordinated": {"rate_limit_rad_per_s": 12.0}}.get(kind, {})
+    wheels = [{**MODULE, "steered": kind, "name": name, "x_m": x, "y_m": y, **own} for name, (x, y) in PLACES.items()]
+    return build_scene({"vehicle": {**VEHICLE, "wheel": wheels}, "ground": {"friction_coefficient": 0.7},
+                        "rig": rig or {}, "run": {"duration_s": 1.0, "step_s": 0.002, "real": real}})
+
+
+def enabled(vehicle: Played, node_id: int, mode: int) -> Any:
+    """A drive that follows targets from now on."""
+    node = vehicle.node(node_id, BaseNode402)
+    node.sdo["Modes of operation"].raw = mode
+    node.nmt.state = "PRE-OPERATIONAL"
+    node.setup_402_state_machine()
+    node.nmt.state = "OPERATIONAL"
+    node.state = "OPERATION ENABLED"
+    return node
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_slipping_wheels_and_axes_take_the_steps_of_the_core_with_the_torques_of_the_drives(real: str,
+                                                                                           tmp_path: Path) -> None:
+    scene = swerve(real=real)
+    bare = without_motors(scene).slipping_vehicle(scene.core())
+    plant, row = bare.plant(step_s=scene.run.step_s), bare.input_row()
+    names = [*(f"axle_torque_Nm[{wheel}]" for wheel in range(1, 5)), *(f"hinge_torque_Nm[{name}]" for name in PLACES)]
+    slots = [bare.slot(name) for name in names]
+    with played_on_canopen(scene, tmp_path) as vehicle:
+        targets = (20000, 4000, 4000, 4000, 1500, 500, -500, 300)  # of which the first wheel spins
+        for node_id, target in enumerate(targets, start=1):
+            enabled(vehicle, node_id, 3).sdo["Target velocity"].raw = target
+        plant.run(row, vehicle.vehicle.node.inspect()["steps"])
+        for _ in range(300):
+            vehicle.step()
+            row[slots] = [vehicle.drive(number).axle_torque_Nm for number in range(8)]
+            plant.follow(row[None])
+            now, wanted = vehicle.vehicle.node.motion(), plant.motion()
+            assert (now.x_m, now.y_m, now.yaw_rate_rad_per_s) == (wanted.x_m, wanted.y_m, wanted.yaw_rate_rad_per_s)
+            angles = [*wanted.wheel_angle_rad, *wanted.hinge_angle_rad]
+            assert [vehicle.drive(number).wheel_angle_rad for number in range(8)] == angles
+    assert plant.outputs().contact_state.any() and abs(wanted.hinge_angle_rad[0]) > 0.01 and wanted.x_m > 0.01
+
+
+@pytest.mark.parametrize("kind, hinge", [
+    ("servo", {}), ("coordinated", {}), ("coordinated", SERVO), ("prescribed", {}),
+    ("motor", {"steering_gain_Nm_per_V": 0.5, "steering_damping_Nms": 0.1}),
+    ("motor", {"steering_gain_Nm_per_V": 0.5, "loop_V_per_rad": 30.0, "loop_Vs_per_rad": 1.0})])
+def test_drives_steer_a_swerve_that_slips_whatever_turned_its_modules(kind: str, hinge: dict[str, Any],
+                                                                    tmp_path: Path) -> None:
+    angle_rad, per_turn = 0.4, 4096
+    with played_on_canopen(swerve(kind, **hinge), tmp_path) as vehicle:
+        for node_id in range(1, 9):
+            node = enabled(vehicle, node_id, 3 if node_id < 5 else 1)
+            if node_id < 5:
+                node.sdo["Target velocity"].raw = round(5.0 / TURN * per_turn)
+                continue
+            node.sdo["Profile velocity"].raw = round(4.0 / TURN * per_turn)
+            for ramp in ("Profile acceleration", "Profile deceleration"):
+                node.sdo[ramp].raw = round(20.0 / TURN * per_turn)
+            node.sdo["Target position"].raw = round(angle_rad / TURN * per_turn)
+            node.controlword = 0x3F
+        vehicle.step(600)
+        now = vehicle.vehicle.node.motion()
+        for number in range(4, 8):
+            assert vehicle.drive(number).wheel_angle_rad == pytest.approx(angle_rad, abs=3e-3)
+        assert math.hypot(*now.velocity_m_per_s) == pytest.approx(5.0 * 0.05, rel=0.02)
+        assert math.atan2(now.velocity_m_per_s[1], now.velocity_m_per_s[0]) == pytest.approx(angle_rad, abs=0.01)
+
+
+def test_a_servo_without_a_drive_keeps_its_start_angle_and_one_with_a_drive_does_not(tmp_path: Path) -> None:
+    scene = swerve(rig={"drives": {"node_ids": [1, 2, 3, 4, 5, False, False, False]}}, start_angle_rad=0.3, **SERVO)
+    behind = without_motors(scene, drive_settings(scene, "canopen").driven)
+    assert [hinge.kind for hinge in behind.hinges] == ["motor", "servo", "servo", "servo"]
+    bare = behind.slipping_vehicle(behind.core())
+    plant = bare.plant(step_s=scene.run.step_s, hinge_angle_rad=[0.3] * 4)
+    row = bare.input_row({"steering_angle_rad": [0.3] * 4})
+    with played_on_canopen(scene, tmp_path) as vehicle:
+        enabled(vehicle, 5, 3).sdo["Target velocity"].raw = -2000
+        for _ in range(200):
+            vehicle.step()
+            row[bare.slot("hinge_torque_Nm[front_left]")] = vehicle.drive(4).axle_torque_Nm
+            plant.follow(row[None])
+        now, wanted = vehicle.vehicle.node.motion(), plant.motion()
+        assert (now.x_m, now.y_m, now.yaw_rate_rad_per_s) == (wanted.x_m, wanted.y_m, wanted.yaw_rate_rad_per_s)
+    assert wanted.hinge_angle_rad[0] < 0.2 and wanted.hinge_angle_rad[1:] == pytest.approx([0.3] * 3, abs=0.02)
+
+
+@pytest.mark.parametrize("drive, axis", [(0, "wheel"), (5, "hinge")])
+def test_a_brake_by_order_stalls_the_drive_of_a_wheel_or_axis_that_may_slip(drive: int, axis: str,
+                                                                          tmp_path: Path) -> None:
+    scene = swerve(rig={"drives": {"stall_time_s": 0.1, "current_limit_A": 2.0}})
+    with played_on_canopen(scene, tmp_path) as vehicle:
+        node = enabled(vehicle, drive + 1, 3)
+        vehicle.vehicle.order(drive + 1, ORDERS[STALL])
+        before = vehicle.drive(drive).wheel_angle_rad
+        node.sdo["Target velocity"].raw = 4000
+        vehicle.step(150)
+        assert vehicle.drive(drive).wheel_angle_rad == pytest.approx(before, abs=1e-6), axis
+        assert node.sdo[0x603F].raw == 0x7121  # stalled
+        vehicle.vehicle.order(drive + 1, 0)
+        node.controlword = 0x80
+        enabled(vehicle, drive + 1, 3).sdo["Target velocity"].raw = 4000
+        vehicle.step(150)
+        assert abs(vehicle.drive(drive).wheel_angle_rad - before) > 0.05
+
+
+def test_the_command_plays_a_swerve_that_slips_and_breaks_its_steering(capsys: pytest.CaptureFixture[str],
+                                                                      tmp_path: Path) -> None:
+    arguments = ["--drives", "odrive", "--listen", "0", "--duration", "0.3", "--fault", "stall:6@0.1"]
+    assert run(["play", "swerve_module_off", *arguments]) == 0
+    assert "never fired" in capsys.readouterr().out
+    assert run(["play", "swerve_module_off", "--board", "process", *arguments]) == 0
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(why_no_emulation() is not None, reason="no emulated boards")
+def test_an_emulated_board_plays_a_swerve_that_slips(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--real", "single", "--step", "0.01", "--drives", "odrive", "--listen", "0", "--duration", "0.5"]
+    assert run(["play", "swerve_module_off", "--board", "an386-slip", *arguments]) == 0
+    assert "never fired" in capsys.readouterr().out
+
+
 # ---- settings and refusals
 
 
@@ -151,7 +284,8 @@ def test_a_list_of_drives_counts_wheels_and_then_hinges(name: str, drives: dict[
 
 @pytest.mark.parametrize("arguments, message", [
     (["f1tenth", "--drives", "odrive"], "coordinated ones turn together"),
-    (["tricycle_agv", "--drives", "canopen", "--fault", "stall:1@1"], "no brake holds a vehicle with hinges yet"),
+    (["tricycle_agv", "--drives", "canopen", "--fault", "stall:1@1"],
+     "no brake holds a vehicle with hinges on ideal ground"),
     (["tricycle_agv", "--drives", "canopen", "--bag", "out.mcap"], "--bag does not take vehicles with hinges yet")])
 def test_what_cannot_be_played_is_refused_in_one_line(arguments: list[str], message: str,
                                                       capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,11 +13,11 @@ import pytest
 
 from laconic.base.paths import SCENE_DIR, SOURCE_DIR
 from laconic.can.play.checksums import CHECKSUMS
-from laconic.can.play.fault_kinds import KINDS
 from laconic.can.play.map_file import AT_TIMEOUT, read_map
 from laconic.can.play.map_signals import BODY_OUTPUTS, DRIVE_OUTPUTS, OF_DRIVES, WHEEL_OUTPUTS
 from laconic.can.play.node_vehicle import remedy
 from laconic.can.play.options import PlayOptions
+from laconic.can.play.protocols import KINDS
 from laconic.can.play.session import play
 from laconic.can.play.settings import drive_settings
 from laconic.can.play.vehicle import coasts_for_ever

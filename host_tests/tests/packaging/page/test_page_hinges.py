@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -14,9 +15,10 @@ import tomllib
 from conftest import PAGE
 
 from laconic import read_scene, simulate
-from laconic.base.paths import build_dir, scene_names, scene_path
+from laconic.base.paths import SOURCE_DIR, build_dir, scene_names, scene_path
 from laconic.scene.hinges import file_has_hinges
 from laconic_build.page.browser import Browser
+from laconic_build.page.page import make_page
 
 SHOTS = PAGE.parent
 HINGED = [name for name in scene_names() if file_has_hinges(scene_path(name))]
@@ -151,6 +153,93 @@ def test_a_start_that_the_robot_without_slip_refuses_ends_that_one_alone(page):
     page.choose("turn", str(most(page, "turn")))
     step(page, 2)
     assert page.text("banner") == "" and page.text("ideal-note").startswith("initial.velocity_body_m_per_s: this start")
+
+
+# ---- hinges that turn by themselves, which no built-in scene has
+
+SERVO = """steered = "servo"
+servo_gain_Nm_per_rad = 20.0
+servo_damping_Nms = 0.5
+servo_limit_Nm = 5.0
+"""
+TURNED_BY = {"servo": SERVO, "prescribed": 'steered = "prescribed"\nrate_limit_rad_per_s = 12.0\n',
+             "rates": 'steered = "prescribed"\n',
+             "motor": 'steered = "motor"\nsteering_gain_Nm_per_V = 0.5\nsteering_damping_Nms = 0.3\n'}
+
+
+def without_inputs(text: str) -> str:
+    return re.sub(r"(?ms)^\[\[input\]\].*?(?=^\[(?!\[input))", "", text)
+
+
+@pytest.fixture(scope="module")
+def own_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page with swerves whose modules turn by themselves, and a car with two servos."""
+    if not PAGE.exists():
+        pytest.skip("the page was not built: no clang with wasm-ld")
+    folder = tmp_path_factory.mktemp("own_page")
+    scenes = folder / "scenes"
+    scenes.mkdir()
+    shutil.copy(scene_path("robotino2"), scenes)
+    swerve = without_inputs(scene_path("swerve_module_off").read_text()).replace("axle_deg = -84.0", "axle_deg = -90.0")
+    swerve = re.sub(r"(?m)^(rate_limit_rad_per_s = 12.0)\n", "", swerve)
+    for name, keys in TURNED_BY.items():
+        (scenes / f"{name}.toml").write_text(swerve.replace('steered = "coordinated"\n', keys))
+    front, _, rear = swerve.partition('name = "rear_left"')
+    car = f"{front}name = \"rear_left\"{rear}".replace('steered = "coordinated"\n', SERVO, 2)
+    car = re.sub(r'steered = "coordinated"\nname = "\w+"\n(.*\n.*\n)mass_kg = 1.0\nyaw_inertia_kgm2 = 0.002\n',
+                 r"\1axle_deg = -90.0\n", car)
+    (scenes / "car.toml").write_text(car)
+    make_page(SOURCE_DIR / "web/page", build_dir() / "npm/laconic/src", scenes, build_dir() / "page/native_hash.txt",
+              folder / "laconic.html")
+    return folder
+
+
+@pytest.mark.parametrize("robot", ["servo", *(pytest.param(each, marks=pytest.mark.nightly)
+                                             for each in TURNED_BY if each != "servo")])
+def test_velocity_drives_a_swerve_whose_modules_turn_by_themselves(window, own_page, robot, tmp_path):
+    window.open(own_page / "laconic.html", prefers_reduced_motion="reduce")
+    choose(window, robot)
+    assert window.js("return document.getElementById('left').checkVisibility()")
+    label = window.js("return document.getElementById('turn').previousElementSibling.textContent")
+    assert label == "Turn"
+    for slider, part in (("left", 0.3), ("left", -0.3)):
+        window.choose(slider, str(part * most(window, slider)))
+        step(window, 20)
+        assert shown(window, "now-left") == pytest.approx(part * most(window, slider), rel=0.03)
+        assert abs(shown(window, "now-forward")) < 0.03 and abs(shown(window, "now-turn")) < 0.03
+        turned = [float(each.partition("°")[0].replace("−", "-")) for each in angles(window)]
+        assert [abs(each) for each in turned] == pytest.approx([90.0] * 4, abs=1.5)
+    window.choose("left", "0")
+    window.choose("turn", str(0.3 * most(window, "turn")))
+    step(window, 20)
+    assert shown(window, "now-turn") == pytest.approx(0.3 * most(window, "turn"), rel=0.03)
+    assert window.text("banner") == "" and window.errors() == []
+    assert simulated(exported(window, tmp_path)) == pytest.approx(pose(window), rel=1e-12, abs=1e-12)
+
+
+def test_a_car_with_a_servo_for_each_wheel_steers_both_along_one_circle(window, own_page):
+    window.open(own_page / "laconic.html", prefers_reduced_motion="reduce")
+    choose(window, "car")
+    label = window.js("return document.getElementById('turn').previousElementSibling.textContent")
+    assert label == "Steer" and not window.js("return document.getElementById('left').checkVisibility()")
+    window.choose("forward", str(0.3 * most(window, "forward")))
+    window.choose("turn", str(0.3 * most(window, "turn")))
+    step(window, 20)
+    left, right = (math.radians(float(each.partition("°")[0])) for each in angles(window))
+    assert 1 / math.tan(right) - 1 / math.tan(left) == pytest.approx(0.4 / 0.4, rel=0.02)  # track over wheelbase
+    assert shown(window, "now-turn") > 0.05 and window.errors() == []
+
+
+def test_each_module_that_turns_by_itself_has_a_slider_of_its_angle(window, own_page):
+    window.open(own_page / "laconic.html", prefers_reduced_motion="reduce")
+    choose(window, "servo")
+    window.click("[name=drive][value=wheels]")
+    offered = window.js("return [...document.querySelectorAll('#wheel-sliders input')].map((each) => each.id)")
+    names = ("front_left", "front_right", "rear_left", "rear_right")
+    assert offered == [*(f"wheel-{k}" for k in range(4)), *(f"hinge-{name}" for name in names)]
+    window.choose("hinge-rear_left", "0.5")
+    step(window, 10)
+    assert [round(float(each.partition("°")[0])) for each in angles(window)] == [0, 0, 29, 0]
 
 
 def test_one_module_that_is_straightened_lets_all_wheels_hold(page, tmp_path):

@@ -11,7 +11,7 @@ import click
 import pytest
 
 from laconic.base import outputs
-from laconic.base.paths import scene_path
+from laconic.base.paths import scene_names, scene_path
 from laconic.cli import options
 from laconic.cli.main import commands, run
 from laconic.errors import BadInput
@@ -147,13 +147,21 @@ def test_a_name_ends_as_its_format(scene, capsys, arguments):
     ("fmu", SCENE, "--fmi", "2", "-o", "a/b/run.fmu"),
     ("fmu", SCENE, "--fmi", "2", "--ssp", "-o", "a/b/run.ssp"),
     ("rig", "s1", "--steps", "2", "--log", "a/b/run.blf"), ("rig", "s1", "--steps", "2", "--junit", "a/b/run.xml"),
-    ("trim", SCENE, "--out", "a/b")], ids=" ".join)
+    ("trim", SCENE, "--out", "a/b"), ("rig", SCENE, "--a2l", "a/b/run.a2l"),
+    ("play", "canopen_agv", "--eds", "a/b/run.eds")], ids=" ".join)
 def test_folders_of_an_output_are_made_and_told(scene, capsys, arguments):
     assert run(list(arguments)) == 0
     assert capsys.readouterr().err.count("laconic: made the folder a/b\n") == 1
     made = list(scene.with_name("a").joinpath("b").iterdir())
     assert made and all(path.stat().st_size > 0 for path in made)
     assert not [path for path in made if path.name.startswith(".")]
+
+
+@pytest.mark.parametrize("arguments", [("rig", SCENE, "--a2l", "run.a2l"), ("play", "canopen_agv", "--eds", "run.eds")],
+                         ids=" ".join)
+def test_a_command_that_writes_one_file_says_so(scene, capsys, arguments):
+    assert run(list(arguments)) == 0
+    assert capsys.readouterr().out == f"wrote {arguments[-1]}\n"
 
 
 @pytest.mark.parametrize("command", ["demo", "analyse", "trim", "report", "replay"])
@@ -239,3 +247,38 @@ def test_a_file_is_written_once_in_a_run_and_never_over_an_input(tmp_path):
         with pytest.raises(BadInput, match="reads"):
             outputs.write_text(tmp_path / "b.txt", "two")
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+# ---- laconic scenes
+
+
+def test_scenes_lists_each_scene_with_its_title(capsys):
+    assert run(["scenes"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == scene_names() and "Tricycle AGV" in "\n".join(lines)
+    assert run(["scenes", "--json"]) == 0
+    shown = json.loads(capsys.readouterr().out)["scenes"]
+    assert {"scene": "s1", "name": "S1: three omni wheels, square wave"} in shown
+
+
+def test_scenes_copies_a_scene_that_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["scenes", "paper_caster", "-o", "my.toml"]) == 0
+    assert capsys.readouterr().out == "wrote my.toml\n"
+    assert Path("my.toml").read_text() == scene_path("paper_caster").read_text()
+    assert run(["scenes", "paper_caster"]) == 0
+    assert capsys.readouterr().out == Path("my.toml").read_text()
+    assert run(["simulate", "my.toml"]) == 0
+
+
+def test_scenes_never_overwrites_a_copy_with_changes(scene, capsys):
+    told = refused(capsys, "scenes", SCENE, "-o", "own.toml")
+    assert "exists already and may hold your changes" in told
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["robotino3"], "did you mean robotino2?"), (["../scenes/s1"], "no scene of this name comes with the project"),
+    (["-o", "my.toml"], "needs the name of one scene"), (["s1", "--json"], "is for the list of all scenes")])
+def test_scenes_refuses_what_it_cannot_do(tmp_path, monkeypatch, capsys, arguments, message):
+    monkeypatch.chdir(tmp_path)
+    assert message in refused(capsys, "scenes", *arguments)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from laconic.can.play.fault_kinds import BUS_OFF, ERROR_FRAMES, KINDS, OF_WHEEL, SILENT, STALL
 from laconic.can.play.options import PlayOptions
+from laconic.can.play.protocols import BUS_OFF, ERROR_FRAMES, KINDS, OF_WHEEL, SILENT, STALL
 from laconic.can.play.settings import DriveSettings
 from laconic.scene import Scene
 
@@ -28,9 +28,10 @@ class CanFail:
         return self.of_wheel + self.of_whole
 
 
-def drives_can_fail(settings: DriveSettings, options: PlayOptions, *, has_hinges: bool = False) -> CanFail:
-    """Drives of a protocol, each a station of its own."""
-    why_not = {STALL: "no brake holds a vehicle with hinges yet"} if has_hinges else {}
+def drives_can_fail(settings: DriveSettings, options: PlayOptions, *, rolls_on_hinges: bool = False) -> CanFail:
+    """Drives of a protocol, each a station of its own. `rolls_on_hinges`: the vehicle has hinges, on ideal ground."""
+    why_not = {STALL: "no brake holds a vehicle with hinges on ideal ground; give ground.friction_coefficient"} \
+        if rolls_on_hinges else {}
     if not settings.protocol.has_sign_of_life:
         why_not[SILENT] = f"{settings.protocol.name} has no sign of life: its drives speak when they are asked"
     if (why := why_no_error_frames(options)) is not None:

@@ -18,7 +18,7 @@ from typing import Protocol
 import can
 
 from laconic.can.play.can_fail import CanFail
-from laconic.can.play.fault_kinds import ERROR_FRAMES
+from laconic.can.play.protocols import ERROR_FRAMES
 from laconic.can.rig.faults import FIELD_TYPES, FaultModel, faults_from
 from laconic.can.rig.faulty import FaultyBus
 from laconic.errors import BadInput, nearest_of

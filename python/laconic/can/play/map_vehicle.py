@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 import can
 import numpy as np
 
-from laconic.can.play.fault_kinds import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
 from laconic.can.play.faults import DriveFault
 from laconic.can.play.journey import Pose
 from laconic.can.play.loop import Lateness
@@ -17,6 +16,7 @@ from laconic.can.play.map_join import Joined, Key
 from laconic.can.play.map_messages import Sender
 from laconic.can.play.map_plant import MapPlant
 from laconic.can.play.map_signals import reader_of
+from laconic.can.play.protocols import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
 from laconic.can.play.settings import DriveSettings
 from laconic.can.rig.faults import error_frame
 from laconic.errors import LaconicError, Refused, ResultFails

@@ -14,11 +14,11 @@ from typing import Any
 
 import can
 
-from laconic.can.play.fault_kinds import ERROR_FRAMES, ORDERS
 from laconic.can.play.faults import DriveFault
 from laconic.can.play.journey import Pose
 from laconic.can.play.loop import Lateness
 from laconic.can.play.orders import Orders
+from laconic.can.play.protocols import ERROR_FRAMES, ORDERS
 from laconic.can.play.senders import Senders
 from laconic.can.play.settings import DriveSettings, drive_parameters
 from laconic.can.play.vehicle import played, without_sensors
@@ -69,7 +69,7 @@ class NodeVehicle:
             self._notes.append(f"the node was found in state {found} and has been stopped before")
         self.client.link.listeners.append(self._hear_early)
         try:
-            self._load(without_sensors(played(self.scene)))
+            self._load(without_sensors(played(self.scene, self.settings.driven)))
             self._count_before()
             self.choose_frames(*self.watched)
             self.client.start_drives()

@@ -139,7 +139,8 @@ class OfNode(Place):
         self.last_words: list[str] = []  # of that process
         self.serves_itself = options.is_served and options.listen is not None
         self.remark = silent_sensors(scene)
-        self.can_fail = drives_can_fail(self.settings, options, has_hinges=scene.has_hinges)
+        self.can_fail = drives_can_fail(
+            self.settings, options, rolls_on_hinges=scene.has_hinges and not scene.slips_on_hinges)
 
     @contextmanager
     def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:

@@ -1,4 +1,5 @@
-"""The protocols of drives as the host knows them: node ids, the identifiers that they use, and the usual motor."""
+"""The protocols of drives as the host knows them: node ids, the identifiers that they use, and the usual motor; and the
+kinds of faults that drives have on purpose, with their bits in the order to a node."""
 
 from __future__ import annotations
 
@@ -7,6 +8,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from laconic.scene.drives import DRIVE_PROTOCOLS
+
+STALL, BUS_OFF, SILENT, ERROR_FRAMES = "stall", "bus-off", "silent", "error-frames"
+ORDERS = {STALL: 1024, "encoder": 1, "temperature": 4, "overspeed": 8, "supply": 16, BUS_OFF: 256, SILENT: 512}
+OF_DRIVE = tuple(kind for kind, bit in ORDERS.items() if bit < 256)  # LACONIC_DRIVE_FAULT_…; the rest ORDER_…
+OF_WHEEL = (STALL, *OF_DRIVE)  # what concerns no bus
+KINDS = (*ORDERS, ERROR_FRAMES)
 
 Identifiers = Callable[[int], frozenset[int]]
 

@@ -63,7 +63,8 @@ class DriveSettings:
 def drive_settings(scene: Scene, protocol: str | None, id_base: str | None = None) -> DriveSettings:
     """The drives of a scene; `protocol` and `id_base` are those of the command line. BadInput names the key that nobody
     gives."""
-    given = scene.rig.drives or Drives(driven=tuple(axes_with_motors(scene.vehicle["wheel"], scene.hinges)))
+    given = scene.rig.drives or Drives(driven=tuple(
+        axes_with_motors(scene.vehicle["wheel"], scene.hinges, scene.slips_on_hinges)))
     chosen = OF_MAP if protocol == OF_MAP.name else PROTOCOLS[protocol_of(scene, given, protocol)]
     if not any(given.driven):
         raise BadInput(f"{scene.path}: vehicle.wheel: none is driven, so there is nothing that a drive could turn; "

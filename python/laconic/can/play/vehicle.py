@@ -7,16 +7,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from laconic.core.articulated import ArticulatedVehicle
 from laconic.errors import BadInput
 from laconic.scene import Scene
+from laconic.scene.hinge_friction import OF_LOOPS, OF_SERVOS, PERIOD
+from laconic.scene.hinges import Hinge
 from laconic.scene.sensors import NO_SENSORS
 
 BRAKES = ("axle_friction_Nm", "roller_drag", "viscous_friction_Nms")  # friction that acts on a wheel that rolls
 OWN_MOTOR = ("motor_gain_Nm_per_V", "motor_damping_Nms")
+OF_MOTORS = (*OF_SERVOS, *OF_LOOPS, PERIOD, "winding_resistance_ohm", "current_limit_A", "viscous_friction_Nms")
+"""What of a hinge its drive replaces where wheels slip."""
 
 
-def played(scene: Scene) -> Scene:
-    """The scene without voltages: no motor gain, and of the motor damping only viscous friction of [vehicle.motor]."""
+def played(scene: Scene, driven: Sequence[bool] | None = None) -> Scene:
+    """The scene without voltages: no motor gain, and of the motor damping only viscous friction of [vehicle.motor].
+
+    `driven`: which wheels, then which hinges, have a drive; not given: all that could have one. On ground with friction
+    a drive replaces a hinge's servo or loop; one without a drive keeps it and holds its start angle.
+    """
     vehicle: dict[str, Any] = {key: value for key, value in scene.vehicle.items() if key != "drive"}
     vehicle["wheel"] = [{key: value for key, value in wheel.items() if key not in (*OWN_MOTOR, "motor_circuit")}
                         for wheel in vehicle["wheel"]]
@@ -24,16 +33,35 @@ def played(scene: Scene) -> Scene:
         vehicle["motor"] = vehicle["motor"] | {"torque_constant_Nm_per_A": 0.0, "back_emf_Vs_per_rad": 0.0}
     else:
         vehicle |= dict.fromkeys(OWN_MOTOR, 0.0)
-    if scene.has_hinges:  # the drive of a steering axis is its motor, too
-        vehicle["body"] = [body | _without_motor(dict(hinge.motor)) if hinge.kind == "motor" else body
-                           for body, hinge in zip(vehicle["body"], scene.hinges, strict=True)]
-    return replace(scene, vehicle=vehicle, inputs=())
+    hinges = scene.hinges
+    if scene.has_hinges:
+        turned = [True] * len(hinges) if driven is None else driven[scene.wheel_count:]
+        axes = [_axis(body, hinge, has_drive, scene.slips_on_hinges)
+                for body, hinge, has_drive in zip(vehicle["body"], hinges, turned, strict=True)]
+        vehicle["body"], hinges = [body for body, _ in axes], tuple(hinge for _, hinge in axes)
+    return replace(scene, vehicle=vehicle, inputs=(), hinges=hinges)
 
 
-def _without_motor(motor: dict[str, float]) -> dict[str, float]:
+def _axis(body: dict[str, Any], hinge: Hinge, has_drive: bool, slips: bool) -> tuple[dict[str, Any], Hinge]:
+    """A hinge behind drives. The drive of a steering axis is its motor, and where wheels slip its servo or loop."""
+    if hinge.kind == "motor" and not (hinge.follows and not has_drive):
+        body = {key: value for key, value in body.items() if key not in OF_MOTORS}
+        return body | _without_motor(dict(hinge.motor), slips), replace(hinge, follows="")
+    if not slips or hinge.kind not in ("servo", "coordinated"):
+        return body, hinge
+    if not hinge.follows:  # a coordinated hinge whose rate a command gave
+        return body, replace(hinge, kind="prescribed")
+    if not has_drive:
+        return body, replace(hinge, kind="servo")
+    own = {key: value for key, value in body.items() if key not in OF_MOTORS}
+    return own | {"hinge": "motor", "gain_Nm_per_V": 0.0}, replace(hinge, kind="motor", follows="")
+
+
+def _without_motor(motor: dict[str, float], slips: bool) -> dict[str, float]:
     """What is left of a hinge's motor: the viscous friction of one that is given at its shaft."""
     friction = motor.get("gear_ratio", 0.0) ** 2 * motor.get("viscous_friction_Nms", 0.0)
-    return {"gain_Nm_per_V": 0.0, "damping_Nms": friction}
+    more = {"viscous_friction_Nms": friction} if slips else {}
+    return {"gain_Nm_per_V": 0.0, "damping_Nms": friction, **more}
 
 
 def without_sensors(scene: Scene) -> Scene:
@@ -62,7 +90,7 @@ def moved_inertia(scene: Scene, driven: Sequence[bool], radius_m: Sequence[float
     `radius_m`: what the wheels' radii are taken for, instead of the scene's.
     """
     core, bodies = scene.core(), scene.vehicle["body"] if scene.has_hinges else ()
-    whole = scene.articulated_vehicle(core) if scene.has_hinges else None  # owns the memory of its base
+    whole = hinged_vehicle(scene) if scene.has_hinges else None  # owns the memory of its base
     vehicle = whole.c.base if whole else scene.c_vehicle(core)
     mass_kg = float(vehicle.mass_kg) + float(vehicle.payload.mass_kg) + sum(body["mass_kg"] for body in bodies)
     found, count = [], scene.wheel_count
@@ -72,6 +100,12 @@ def moved_inertia(scene: Scene, driven: Sequence[bool], radius_m: Sequence[float
         found.append(own_kgm2 + mass_kg * radius**2 / sum(driven[:count]) if has_drive else 0.0)
     found += [about_hinge(body) if has_drive else 0.0 for body, has_drive in zip(bodies, driven[count:], strict=True)]
     return tuple(found)
+
+
+def hinged_vehicle(scene: Scene) -> ArticulatedVehicle:
+    """The vehicle of a scene with hinges, on ideal ground or on one with friction."""
+    core = scene.core()
+    return scene.slipping_vehicle(core) if scene.slips_on_hinges else scene.articulated_vehicle(core)
 
 
 def about_hinge(body: Mapping[str, Any]) -> float:
@@ -84,6 +118,8 @@ def check_playable(scene: Scene) -> None:
     """BadInput for a vehicle that no drive can move."""
     if not scene.vehicle["wheel"]:
         raise BadInput(f"{scene.path}: vehicle.wheel: there is none; a vehicle that is played needs a wheel")
-    if coordinated := [hinge for hinge in scene.hinges if hinge.kind == "coordinated"]:
+    coordinated = [hinge for hinge in scene.hinges if hinge.kind == "coordinated"]
+    if coordinated and not scene.slips_on_hinges:
         raise BadInput(f"{scene.path}: {coordinated[0].place}.steered: drives turn each steering axis by itself, and "
-                       "coordinated ones turn together; give one axis \"prescribed\" or \"motor\"")
+                       "coordinated ones turn together; give ground.friction_coefficient, which lets wheels slip, or "
+                       "give one axis \"prescribed\" or \"motor\"")

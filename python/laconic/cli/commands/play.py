@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from laconic.base.outputs import write_text
-from laconic.can.play.fault_kinds import KINDS as FAULTS
+from laconic.can.play.protocols import KINDS as FAULTS
 from laconic.can.rig.choices import KINDS, LOGS, ON_BUS
 from laconic.cli.options import (
     InputPath,
@@ -87,6 +87,7 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")
         write_text(eds, eds_of_scene(scene, given["drives"]))
+        click.echo(f"wrote {eds}")
         return 0
     began = time.perf_counter()
     if is_ardupilot:

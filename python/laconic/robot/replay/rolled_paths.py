@@ -145,7 +145,7 @@ def draw(found: RolledPaths, folder: Path) -> list[Path]:
     picture.legend(handles=panels[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
     save(picture, folder / "paths.png")
     if slips(found.scene.vehicle) and not found.scene.has_hinges:
-        from laconic.robot.replay.picture_of_drag import draw_drag
+        from laconic.robot.replay.report import draw_drag
 
         return [folder / "paths.png", draw_drag(found.scene, found.logs, folder)]
     return [folder / "paths.png"]
