@@ -82,11 +82,12 @@ endif()
 # laconic_declarations(<target> <header>): the header's declarations, as the tables of cffi beside it (….py).
 function(laconic_declarations target header)
     cmake_path(REPLACE_EXTENSION header LAST_ONLY py OUTPUT_VARIABLE tables)
-    set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../packaging/laconic_build/declarations.py")
+    set(packaging "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../packaging")
     add_custom_command(
         OUTPUT "${tables}"
-        COMMAND "${LACONIC_PYTHON}" "${script}" --header "${header}" --out "${tables}"
-        DEPENDS "${header}" "${script}"
+        COMMAND "${CMAKE_COMMAND}" -E env "PYTHONPATH=${packaging}" PYTHONDONTWRITEBYTECODE=1
+                "${LACONIC_PYTHON}" -m laconic_build.c declarations "${header}"
+        DEPENDS "${header}" "${packaging}/laconic_build/c/__main__.py"
         COMMENT "Declarations for Python: ${target}" VERBATIM)
     add_custom_target(${target} ALL DEPENDS "${tables}")
     add_dependencies(${target} laconic_venv)

@@ -92,7 +92,7 @@ static bool is_left_out(uint8_t field) {
     const bool of_wheel = field >= LACONIC_FIELD_OWN_RADIUS && field <= LACONIC_FIELD_DRIVEN;
     const bool of_drives = field >= LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL && field <= LACONIC_DRIVES_FIELD_LAST;
     const bool of_sensors = field >= LACONIC_SENSOR_FIELD_IMU_X && field < LACONIC_SENSOR_FIELD_COUNT;
-    const bool of_friction = field >= LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT && field < LACONIC_FIELD_COUNT;
+    const bool of_friction = field >= LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT && field <= LACONIC_FIELD_MOTOR_CIRCUIT;
     return of_motor || (!LACONIC_WITH_OWN_WHEELS && of_wheel) || (!LACONIC_WITH_SLOPE && of_slope) ||
            (!LACONIC_WITH_FRICTION && of_friction && !of_slope) || (!LACONIC_NODE_WITH_DRIVES && of_drives) ||
            (!LACONIC_NODE_WITH_SENSORS && of_sensors) || (LACONIC_NODE_WITH_HINGES && is_of_slip(field));

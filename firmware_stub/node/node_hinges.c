@@ -78,16 +78,9 @@ static laconic_status set_tree_start(laconic_node_hinges *hinges, const laconic_
     memcpy(start.wheel_speed_rad_per_s, wheel_speed_rad_per_s, sizeof start.wheel_speed_rad_per_s);
     return laconic_tree_state_set(&hinges->tree, &hinges->tree_model, &start, why);
 }
-#endif
 
-static bool is_to_slip(const laconic_parameters *new) {
-#if LACONIC_NODE_WITH_SLIP
-    return new->vehicle.ground.friction_coefficient != 0;
-#else
-    (void)new;
-    return false;
+static bool is_to_slip(const laconic_parameters *new) { return new->vehicle.ground.friction_coefficient != 0; }
 #endif
-}
 
 static laconic_status prepare(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {
     laconic_articulated_vehicle whole;

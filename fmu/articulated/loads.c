@@ -51,12 +51,17 @@ static void add_weight(weights *w, double newtons, place at) {
     w->y_Nm += newtons * at.y;
 }
 
-static void find_weights(weights carried[BODIES], const posture *p) {
+static void find_weights(weights carried[BODIES], const posture *p, const double shift_m[2]) {
     const laconic_articulated_vehicle *v = p->vehicle;
     const laconic_vehicle *base = &v->base;
-    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->mass_kg, point_of(p, 0, base->com_x_m, base->com_y_m));
-    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->payload.mass_kg,
-               point_of(p, 0, base->payload.x_m, base->payload.y_m));
+    place own = point_of(p, 0, base->com_x_m, base->com_y_m);
+    place payload = point_of(p, 0, base->payload.x_m, base->payload.y_m);
+    own.x += shift_m[0];
+    own.y += shift_m[1];
+    payload.x += shift_m[0];
+    payload.y += shift_m[1];
+    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->mass_kg, own);
+    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->payload.mass_kg, payload);
     for (int32_t b = 1; b <= v->body_count; b++) {
         const laconic_body *body = &v->body[b - 1];
         add_weight(&carried[p->group[b]], LACONIC_GRAVITY_M_PER_S2 * body->mass_kg,
@@ -107,13 +112,13 @@ static double share_loads(fmu_model *self, const posture *p, int32_t group, cons
     return group == 0 ? 0.0 : contact.normal_load_of_wrench[point][0] * carried->sum_N;
 }
 
-void fmu_articulated_loads(fmu_model *self) {
+void fmu_articulated_loads(fmu_model *self, const double shift_m[2]) {
     posture p = {0};
     weights carried[BODIES] = {{0.0, 0.0, 0.0}};
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) self->wheel_load_N[i] = 0.0;
     for (int32_t k = 0; k < LACONIC_MAX_SUPPORTS; k++) self->support_load_N[k] = 0.0;
     find_posture(&p, self);
-    find_weights(carried, &p);
+    find_weights(carried, &p, shift_m);
     for (int32_t g = p.vehicle->body_count; g >= 0; g--) {
         if (p.group[g] != g) continue;
         const double on_ball_N = share_loads(self, &p, g, &carried[g]);

@@ -23,7 +23,10 @@ def make_tables(arguments: argparse.Namespace) -> None:
     if token_in(text_3) != token_of(text_3):
         sys.exit(f"{arguments.description}: its token does not belong to its text any more: "
                  f"python -m laconic_fmu renew-token {arguments.description}")
-    description = parsed = parse(text_3)
+    try:
+        description = parsed = parse(text_3)
+    except ValueError as wrong:
+        sys.exit(f"{arguments.description}: {wrong}")
     for header in arguments.fields:
         if fault := missing_variable(header, arguments.description, description):
             sys.exit(fault)

@@ -21,7 +21,7 @@
  * Loads    by statics at each step, with the wheels where they are and the ground's forces of the step before. A hinge
  *          carries pitch and roll (a caster's fork, a swerve module), or as a hitch only a force (a trailer). A hitch's
  *          horizontal force counts as acting at the height of the trailer's centre of mass.
- * Memory   a step needs some 27 kB of stack in double with the default bounds of real.h.
+ * Memory   a step needs some 28 kB of stack in double with the default bounds of real.h.
  * Order    1: halving the step halves the error. Rolling casters need h v/trail < 2.
  * Cost     of a step of 1 ms over that of a rigid vehicle with as many wheels: test_articulated_cost.py. */
 #ifndef LACONIC_ARTICULATED_FRICTION_H

@@ -584,6 +584,7 @@ typedef struct laconic_grip {
     uint64_t instants, slipping, lifting;      /* instants watched; those with a slip, with a lifted point   */
     laconic_grip_event first_slip, worst_slip; /* worst: least margin                              */
     laconic_grip_event first_lift, worst_lift; /* worst: least normal load                         */
+    bool wheel_slips[LACONIC_MAX_WHEELS];      /* at some instant                                  */
 } laconic_grip;
 
 /* Enters one instant. Slip is judged only where the contact has a friction coefficient. A margin or normal load below 0

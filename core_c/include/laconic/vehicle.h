@@ -4,7 +4,7 @@
  *   here                   its member of a struct, and its row in the list of that struct
  *   modelDescription.xml   the variable with its description and unit
  *   laconic.dbc            its number in the value tables of PARAMETER.field and RESULT.field
- *   docs/wire.md           made from these by python -m laconic_wire.document_wire */
+ *   docs/wire.md           made from these by python -m laconic_build.wire.document_wire */
 #ifndef LACONIC_VEHICLE_H
 #define LACONIC_VEHICLE_H
 

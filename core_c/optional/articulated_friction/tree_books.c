@@ -24,7 +24,7 @@ static void tree_enter_bodies(tree_energies *e, const tree_part *p, const tree_s
 
 /* The electrical side of a motor at this speed. Returns its torque. */
 INLINE real tree_enter_motor(tree_energies *e, const tree_part *p, tree_state *s, int32_t axis, real command_V,
-                           real speed) {
+                             real speed) {
     const laconic_tree_motor *a = &p->m->motor[axis];
     const motor_state motor = tree_motor_at(a, command_V, speed, p->terminal_V);
     const bool known = a->ampere_per_Nm != R(0); /* the electrical side */

@@ -126,8 +126,7 @@ INLINE real tree_see_axle(tree_contact *c) {
 INLINE real tree_firm(const tree_contact *c, real x, real y) {
     const tree_sight *s = &c->sight;
     const real *e = c->wheel->rolling, lateral = e[0] * y - e[1] * x;
-    const real firm =
-        s->locked ? x * x * c->row_mass[0] + y * y * c->row_mass[1] : lateral * lateral * c->lateral_mass;
+    const real firm = s->locked ? x * x * c->row_mass[0] + y * y * c->row_mass[1] : lateral * lateral * c->lateral_mass;
     if (!(s->length > R(0)) || s->locked || !(firm > R(0))) return firm;
     const real most = tree_beyond_grip(c);
     return most < firm ? most : firm;

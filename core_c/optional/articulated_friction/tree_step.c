@@ -81,7 +81,8 @@ static void tree_find_momenta(tree_part *p) {
 /* ------------------------------------------------------------------------------------------ hinges -- */
 
 /* An element of the last bundle. */
-INLINE const tree_element *tree_new_element(tree_problem *q, real low, real high, real compliance, real target, real guess) {
+INLINE const tree_element *tree_new_element(tree_problem *q, real low, real high, real compliance, real target,
+                                            real guess) {
     tree_element *e = &q->element[q->element_count++];
     e->low = low;
     e->high = high;
@@ -117,8 +118,8 @@ static void tree_add_stops(tree_part *p, int32_t b, const tree_state *s) {
 
 static void tree_add_prescribed(tree_part *p, int32_t b, const tree_state *s) {
     const real rate = p->in->hinged.hinge_rate_rad_per_s[b - 1];
-    p->hinge[b - 1].drive = tree_new_element(&p->problem, -LACONIC_REAL_MAX, LACONIC_REAL_MAX, R(0), rate,
-                                             p->h * s->drive_Nm[b - 1]);
+    p->hinge[b - 1].drive =
+        tree_new_element(&p->problem, -LACONIC_REAL_MAX, LACONIC_REAL_MAX, R(0), rate, p->h * s->drive_Nm[b - 1]);
     p->problem.free.hinge[b - 1] += p->m->body[b].padding_kgm2 * rate;
 }
 

@@ -54,11 +54,11 @@
 /* 1/x, or 0 where there is nothing to act on. */
 static inline real inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
+static inline real heron(real guess, real x) { return R(0.5) * (guess + x / guess); }
+
 /* √x for x from the least normal number on, some units in the last place; below, a number below 1e-150 (1e-18); not for
  * infinity. It costs a quarter of laconic_root(), which does not use IEEE's layout: half the exponent's bits are the
  * guess, 3.5 % off at most, and each of Heron's rounds squares that: 6e-4, 2e-7, 2e-14, then rounding. */
-static inline real heron(real guess, real x) { return R(0.5) * (guess + x / guess); }
-
 static inline real quick_root(real x) {
 #ifdef LACONIC_SINGLE
     union {

@@ -18,13 +18,16 @@ static void keep_worse(finding *worst, int32_t index, real value, real limit) {
     worst->by_N = value;
 }
 
-static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, int32_t wheels, real rounding_N) {
+/* Also notes each wheel that slips. */
+static finding worst_slip(laconic_grip *grip, const laconic_contact *c, const laconic_reactions *r, int32_t wheels,
+                          real rounding_N) {
     finding worst = {0, R(0)};
     if (r->no_slip_margin_N >= -rounding_N || !(c->friction_coefficient > R(0))) return worst;
     for (int32_t i = 0; i < wheels; i++) {
-        const real needed_N = needed(r, i);
+        const real needed_N = needed(r, i), margin_N = c->friction_coefficient * r->normal_N[i] - needed_N;
         if (needed_N <= rounding_N) continue; /* it may lift, but without a reaction it does not slip */
-        keep_worse(&worst, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
+        if (!(margin_N >= -rounding_N)) grip->wheel_slips[i] = true;
+        keep_worse(&worst, i, margin_N, -rounding_N);
     }
     return worst;
 }
@@ -57,7 +60,7 @@ void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, cons
                         const laconic_reactions *reactions, uint64_t steps) {
     const int32_t wheels = LACONIC_WHEELS(model);
     const real rounding_N = LACONIC_RANK_TOLERANCE * (model->mass_kg * R(LACONIC_GRAVITY_M_PER_S2));
-    const finding slip = worst_slip(contact, reactions, wheels, rounding_N);
+    const finding slip = worst_slip(grip, contact, reactions, wheels, rounding_N);
     const finding lift = worst_lift(contact, reactions, rounding_N);
     laconic_grip_event now;
     grip->instants++;

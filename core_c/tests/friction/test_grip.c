@@ -63,6 +63,22 @@ static void of_instants_that_are_equally_bad_the_first_is_the_worst(void) {
     TEST_ASSERT_EQUAL_UINT64(3, lifts.grip.worst_lift.steps);
 }
 
+static void every_wheel_that_slips_at_some_instant_is_noted(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.8, 0.0);
+    laconic_input input = no_input();
+    look_at(&s, forward(0.1), 0);
+    for (int i = 0; i < 4; i++) TEST_ASSERT_FALSE(s.grip.wheel_slips[i]);
+    laconic_reactions found = look_at(&s, forward(6), 1);
+    for (int i = 0; i < 4; i++) {
+        const double needed_N = hypot((double)found.along_N[i], (double)found.lateral_N[i]);
+        TEST_ASSERT_EQUAL(needed_N > 0.8 * (double)found.normal_N[i], s.grip.wheel_slips[i]);
+    }
+    TEST_ASSERT_TRUE(s.grip.wheel_slips[0]);
+    input.voltage_V[3] = REAL(60);
+    look_at(&s, input, 2);
+    TEST_ASSERT_TRUE(s.grip.wheel_slips[3] && s.grip.wheel_slips[0]); /* they stay noted */
+}
+
 static void the_first_and_the_worst_slip_are_kept_with_what_was_needed(void) {
     scene s = scene_of(with_motors(mecanum()), 0.8, 0.0);
     laconic_reactions first, worst;
@@ -256,6 +272,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_gentle_run_counts_instants_and_nothing_else);
     RUN_TEST(of_instants_that_are_equally_bad_the_first_is_the_worst);
+    RUN_TEST(every_wheel_that_slips_at_some_instant_is_noted);
     RUN_TEST(the_first_and_the_worst_slip_are_kept_with_what_was_needed);
     RUN_TEST(half_a_newton_that_is_missing_is_a_slip);
     RUN_TEST(without_friction_nothing_slips);

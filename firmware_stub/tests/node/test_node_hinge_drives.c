@@ -238,7 +238,6 @@ int main(void) {
     RUN_TEST(a_drive_turns_a_wheel_of_a_vehicle_with_hinges);
     RUN_TEST(a_drive_on_an_axis_that_a_twist_leads_is_refused);
     RUN_TEST(a_drive_beyond_the_last_hinge_is_refused);
-    RUN_TEST(no_brake_by_order_holds_a_vehicle_with_hinges);
     RUN_TEST(a_step_that_the_core_refuses_turns_the_drives_off);
     RUN_TEST(no_brake_by_order_holds_a_vehicle_with_hinges_on_ideal_ground);
     RUN_TEST(drives_move_a_vehicle_that_slips_as_the_core_with_their_torques);

@@ -8,6 +8,13 @@
 
 static fmi2Byte bytes[65536];
 
+/* What the rows of a vehicle's own numbers add to its state: it has the importer's vehicle and the prepared one. */
+#define ONE_ROW(...) +1
+#define VEHICLE_BYTES \
+    (2U * sizeof(double) * \
+     (size_t)(0 LACONIC_VEHICLE_FIELDS(ONE_ROW, ) LACONIC_PAYLOAD_FIELDS(ONE_ROW, ) LACONIC_GROUND_FIELDS(ONE_ROW, ) \
+                  LACONIC_DRIVE_FIELDS(ONE_ROW, )))
+
 static inline size_t write(void) {
     fmi2FMUstate kept = NULL;
     size_t size = 0;

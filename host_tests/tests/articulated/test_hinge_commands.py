@@ -7,6 +7,7 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -20,7 +21,7 @@ from laconic.errors import BadInput
 from laconic.fmu.hinges import left_out
 from laconic.robot.bags.messages import store
 from laconic.scene.base import BaseTable, joint_names
-from laconic.scene.scene_tables import lines_of
+from laconic.scene.scene_text import lines_of
 
 REFERENCE = Path(__file__).parents[1] / "data" / "articulated_reference.json"
 DOES_NOT = "does not take vehicles with hinges"
@@ -89,6 +90,36 @@ def test_the_warning_of_slip_names_the_wheel_that_lacks_most(wheel: int, tmp_pat
     _, out, err = told(["simulate", str(scene), "--json"], capsys)
     assert f"where wheel {wheel} would slip, by" in err
     assert json.loads(out)["no_slip"]["wheel"] == wheel
+
+
+def grip_of(point: dict[str, Any], friction: float, tmp_path: Path,
+            capsys: pytest.CaptureFixture[str]) -> tuple[dict[str, Any], str]:
+    """The verdict on a robot whose third point is a support or a caster, as it starts under a step of its voltages."""
+    tables = two_wheels(wheel_inertia_kgm2=1e-3, friction_coefficient=friction, com_z_m=0.15, com_x_m=0.05,
+                        motor_gain_Nm_per_V=0.5, motor_damping_Nms=0.5, **point)
+    tables |= {"initial": {}, "input": held(voltage_V__1=10.0, voltage_V__2=8.0)}
+    scene = tmp_path / "robot.toml"
+    scene.write_text("\n".join(lines_of(tables, {})), encoding="utf-8")
+    status, out, err = told(["simulate", str(scene), "--json"], capsys)
+    assert status == 0, err
+    return json.loads(out), err
+
+
+def test_a_support_and_a_caster_have_the_same_verdict_on_grip(tmp_path: Path,
+                                                             capsys: pytest.CaptureFixture[str]) -> None:
+    caster = {**CASTER, "x_m": 0.3, "trail_m": 1e-3, "start_angle_deg": 0.0}
+    found = [(grip_of({"support": [{"x_m": 0.299, "y_m": 0.0}]}, friction, tmp_path, capsys),
+              grip_of({"caster": [caster]}, friction, tmp_path, capsys)) for friction in (0.2, 3.0)]
+    (support, told_of_support), (hung, told_of_caster) = found[0]
+    assert support["no_slip"]["holds"] is False and hung["no_slip"]["holds"] is False
+    assert support["no_slip"]["slipping_wheels"] == hung["no_slip"]["slipping_wheels"] == [1, 2]
+    worst = support["no_slip"]["worst_slip"]
+    assert hung["no_slip"]["least_margin_N"] == pytest.approx(worst["margin_N"], rel=1e-3)
+    remedy = told_of_support.strip().rpartition("; ramp the inputs")[2]
+    assert remedy and told_of_caster.splitlines()[0].endswith(remedy)
+    assert "wheels 1 and 2 would slip, worst at 0 s" in told_of_caster
+    (support, _), (hung, _) = found[1]
+    assert not support["no_slip"]["slipping"] and hung["no_slip"]["holds"]
 
 
 @pytest.mark.parametrize("method", ["auto", "rk4", "circle", "moebius-4"])

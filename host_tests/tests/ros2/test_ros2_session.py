@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +134,18 @@ def test_diagnostics_tell_of_slip_and_commands() -> None:
         status = last(reader).status[0]
         assert status.name == "/laconic: base" and status.level == 1 and "wheels slip" in status.message
         assert int({each.key: each.value for each in status.values}["commands"]) > 90
+
+
+def test_the_terminal_tells_of_slip_and_of_a_limit_that_holds() -> None:
+    with rig_of("skid_steer") as rig:
+        rig.drive(120, 0.3, 0.6)
+        assert [line.partition(":")[0] for line in rig.lines if "wheels slip: " in line] == ["/laconic"]
+    scene = read_scene("turtlebot3_burger")
+    with rig_of(replace(scene, base=replace(scene.base, voltage_limit_V=2.0))) as rig:
+        rig.drive(120, 0.2)
+        assert [line for line in rig.lines if "limit" in line] == [
+            "/laconic: wheels 1 and 2 are at their limit of 2 V (base.voltage_limit_V), so the robot follows more "
+            "slowly than commanded; command less, give base.acceleration_limit_m_per_s2, or raise the limit"]
 
 
 def test_other_frames_by_name() -> None:

@@ -5,10 +5,12 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from cantools.database.can import Database, Message, Signal
 
+sys.path.append(str(Path(__file__).resolve().parents[3] / "firmware_stub"))  # which is no package: people copy its file
 import reference_client as reference
 from laconic.scene import METHODS
 

@@ -7,6 +7,7 @@ would have to be below zero. The model does neither: from there on it describes 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +40,7 @@ class Grip:
     worst_slip: GripEvent | None
     first_lift: GripEvent | None
     worst_lift: GripEvent | None
+    slipping_wheels: tuple[int, ...] = ()  # that slipped at some instant, counted from 1
     slip_loss_J: float | None = None    # given where wheels slip by the ground's friction: then nothing must not slip
 
     @classmethod
@@ -50,7 +52,9 @@ class Grip:
         if plant.has_friction and plant.c.friction.slips:
             loss_J = float(plant.c.slip.slip_loss_J.value)
         return cls(float(vehicle.friction_coefficient or vehicle.ground.friction_coefficient) or None,
-                   int(grip.instants), int(grip.slipping), int(grip.lifting), **events, slip_loss_J=loss_J)
+                   int(grip.instants), int(grip.slipping), int(grip.lifting), **events,
+                   slipping_wheels=tuple(i + 1 for i in range(plant.wheel_count) if grip.wheel_slips[i]),
+                   slip_loss_J=loss_J)
 
     @property
     def holds(self) -> bool:
@@ -60,25 +64,47 @@ class Grip:
     def as_json(self) -> dict[str, Any]:
         """Machine-readable. Where wheels slip by the ground's friction, there is no condition to hold: null."""
         found = {"holds": self.holds, **{name: _of_json(each) for name, each in asdict(self).items()}}
-        return found if self.slip_loss_J is None else found | {"holds": None, "slipping": None}
+        return found if self.slip_loss_J is None else found | {"holds": None, "slipping": None, "slipping_wheels": None}
 
     def warning(self) -> str:
         """The events in one line; "" where every reaction was available."""
         found = []
         if self.first_slip and self.worst_slip:
             first, worst = self.first_slip, self.worst_slip
-            found.append(f"{first.where} slips at {first.time_s:g} s (needs {newtons(first.needed_N)} of grip, has "
-                         f"{newtons(first.available_N)}{_load_below_zero(first)}: margin {newtons(first.margin_N)}"
-                         f"{self._more(first, worst, self.slipping, 'margin ' + newtons(worst.margin_N))})")
+            at_worst = self._more(first, worst, self.slipping, "margin " + newtons(worst.margin_N))
+            found.append(f"{self._all_that_slip()}{first.where} slips at {first.time_s:g} s (needs "
+                         f"{newtons(first.needed_N)} of grip, has {newtons(first.available_N)}{_load_below_zero(first)}"
+                         f": margin {newtons(first.margin_N)}{at_worst})")
         if self.first_lift and self.worst_lift:
             first, worst = self.first_lift, self.worst_lift
             found.append(f"{first.where} lifts at {first.time_s:g} s (normal load {newtons(first.normal_N)}"
                          f"{self._more(first, worst, self.lifting, newtons(worst.normal_N))})")
         return " and ".join(found)
 
+    def _all_that_slip(self) -> str:
+        """Where they are several; the one that slips first follows with its numbers."""
+        return f"{wheels_text(self.slipping_wheels)} slip, and first " if self.slipping_wheels[1:] else ""
+
+    def remedy(self) -> str:
+        """What to do about the events."""
+        if self.first_slip:
+            return REMEDY_OF_SLIP
+        return "accelerate less, or check com_z_m" if self.first_lift else ""
+
     def _more(self, first: GripEvent, worst: GripEvent, count: int, size: str) -> str:
         at_worst = "" if worst == first else f"; at worst {size}, {worst.where} at {worst.time_s:g} s"
         return f"{at_worst}; {percent(count, self.instants)} of the run"
+
+
+REMEDY_OF_SLIP = ("ramp the inputs (kind = \"table\") or ask for less, or let wheels slip: give [ground] "
+                  "friction_coefficient in place of vehicle.friction_coefficient")
+
+
+def wheels_text(wheels: Sequence[int]) -> str:
+    """Several wheels for people: "wheels 1, 2 and 4"."""
+    if not wheels[1:]:
+        return f"wheel {wheels[0]}"
+    return f"wheels {', '.join(map(str, wheels[:-1]))} and {wheels[-1]}"
 
 
 def _of_json(value: Any) -> Any:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from laconic.can.play.vehicle import moved_inertia
+from laconic.core.grip import wheels_text
 from laconic.errors import BadInput, Refused
 from laconic.ros2.motion import Lanes, Motion, Seen, Singles, motion_of, product
 from laconic.scene import Scene
@@ -86,7 +87,7 @@ class Base:
         self.odometry = [self._new_odometry() for _ in range(robots)]
         self.record: list[np.ndarray] | None = None  # of the first robot's input, step by step
         self.is_recording = False
-        self.limited = np.zeros(robots, bool)  # at a voltage or torque limit since the last look
+        self.limited = np.zeros((scene.wheel_count, robots), bool)  # at a voltage or torque limit since the last report
         self._wanted = np.zeros((3, robots))   # commands
         self._set = np.zeros((3, robots))      # what the ramps have made of them
         self._integral = np.zeros((scene.wheel_count, robots))
@@ -173,7 +174,7 @@ class Base:
                 held = np.clip(given, -loop.limit, loop.limit)
                 is_over = held != given
                 if is_over.any():
-                    self.limited |= is_over.any(axis=0)
+                    self.limited |= is_over
                     growth = np.where(is_over & (growth * given > 0.0), 0.0, growth)
                     given = held
             self._integral += growth
@@ -182,6 +183,18 @@ class Base:
             refused += self.motion.step(given)
             self._speeds = self.motion.speeds()
         return refused
+
+    def words_of_limit(self, robot: int) -> str:
+        """Which wheels were at the limit of their voltage or torque since the last report; "" where none was."""
+        wheels = (np.flatnonzero(self.limited[:, robot]) + 1).tolist()
+        if not wheels or self.loop.limit is None:
+            return ""
+        which = f"{wheels_text(wheels)} {'are at their' if wheels[1:] else 'is at its'}"
+        is_voltage, table = self.loop.signal == "voltage_V", self.table
+        key = ("base.torque_limit_Nm" if not is_voltage else
+               "base.voltage_limit_V" if table.voltage_limit_V else "vehicle.drive.supply_V")
+        return (f"{which} limit of {self.loop.limit:g} {'V' if is_voltage else 'Nm'} ({key}), so the robot follows "
+                "more slowly than commanded; command less, give base.acceleration_limit_m_per_s2, or raise the limit")
 
     def _aim(self) -> None:
         """Makes the set speeds of the coming step."""

@@ -112,7 +112,8 @@ class HingedRobots:
             return
         each.margin_steps = each.steps
         try:
-            found = each.plant.reactions(each.row, self._loads.of(each.motion))
+            acceleration = each.plant.acceleration(each.row) if self._loads.height_m else (0.0, 0.0)
+            found = each.plant.reactions(each.row, self._loads.of(each.motion, acceleration))
         except Refused:
             return  # a posture that has no reactions, which the next step refuses
         each.margin_N = min(each.margin_N, found.no_slip_margin_N)

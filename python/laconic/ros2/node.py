@@ -422,8 +422,12 @@ class RobotNode:
         outs = (self._odom.out, self._truth.out, self._tf, self._joints, self._imu, self._battery)
         return sum(each.left_out for each in outs if each is not None)
 
-    def report(self, now_s: float) -> None:
-        """Tells the user of messages that were left out since the last report."""
+    def report(self, now_s: float, slipping: str) -> None:
+        """Tells the user what happened since the last report: messages left out, limits of the wheels, and slip."""
+        if limit := self.base.words_of_limit(self.robot):
+            self._tell(now_s, "a wheel at its limit", limit)
+        if slipping:
+            self._tell(now_s, "slip", f"{slipping}; command less, or give base.acceleration_limit_m_per_s2")
         count = self.left_out()
         if count > self._left_out:
             self._tell(now_s, "left out", f"a peer does not keep up, so {count - self._left_out} messages were left "
@@ -432,10 +436,11 @@ class RobotNode:
 
     def status(self, refusal: str, slipping: str, late: int) -> Any:
         """The robot's diagnostic_msgs/DiagnosticStatus."""
-        is_limited, counts = bool(self.base.limited[self.robot]), self.told.counts
-        self.base.limited[self.robot] = False
+        is_limited, counts = bool(self.base.limited[:, self.robot].any()), self.told.counts
+        limit = self.base.words_of_limit(self.robot)
+        self.base.limited[:, self.robot] = False
         level, message = OK, "drives" if self.base.is_commanded(self.robot) else "waits for cmd_vel"
-        for is_so, how, text in ((is_limited, WARN, "a wheel is at its limit"), (bool(slipping), WARN, slipping),
+        for is_so, how, text in ((is_limited, WARN, limit), (bool(slipping), WARN, slipping),
                                  (bool(refusal), ERROR, refusal)):
             if is_so:
                 level, message = max(level, how), text

@@ -26,7 +26,7 @@ from laconic.ros2.messages import new
 from laconic.ros2.names import NANO, Middleware, Out, check_name, diagnostics, sent
 from laconic.ros2.node import RobotNode, Told
 from laconic.scene import Scene
-from laconic.scene.scene_tables import lines_of
+from laconic.scene.scene_text import lines_of
 from laconic.scene.table import read_toml
 
 HOUSEKEEPING_S = 0.02    # between looks for requests
@@ -204,14 +204,14 @@ class Session:
             self._look_at_graph(now_s)
             self._pass_on(now_s)
         if self._is_due("diagnostics", now_s, DIAGNOSTICS_S):
-            late = self.lateness.late
+            late, slipping = self.lateness.late, [self.base.motion.grip(number) for number in range(len(self.robots))]
             for number, robot in enumerate(self.robots):
-                robot.report(now_s)
+                robot.report(now_s, slipping[number])
                 for text in self.base.motion.folded(number):
                     robot.told.tell(now_s, f"{robot.node.full_name}: {text.partition(':')[0]}",
                                     f"{robot.node.full_name}: {text}")
             sent(self._diagnostics, diagnostics(
-                (robot.status(self.refusals.get(number, ""), self.base.motion.grip(number), late)
+                (robot.status(self.refusals.get(number, ""), slipping[number], late)
                  for number, robot in enumerate(self.robots)), self.time_ns))
 
         if self._is_due("line", now_s, LINE_S):

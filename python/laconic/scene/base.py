@@ -163,7 +163,18 @@ def read_frc(table: Table, vehicle: Mapping[str, Any]) -> FrcTable:
         steering_encoder=_devices(table, "steering_encoder", COUNTERS, hinges, "steered wheels"),
         gyro=_device(table, "gyro", table.text("gyro"), GYROS) if table.has("gyro") else None)
     table.done()
+    for wheels_key, hinges_key in (("drive", "steering"), ("drive_encoder", "steering_encoder")):
+        _check_apart(table, found, wheels_key, hinges_key)
     return found
+
+
+def _check_apart(table: Table, found: FrcTable, of_wheels: str, of_hinges: str) -> None:
+    """Fails for a device of a steering axis that a wheel has, too: it is on one shaft."""
+    taken = {(each.kind, each.name, each.value): number for number, each in enumerate(getattr(found, of_wheels), 1)}
+    for number, each in enumerate(getattr(found, of_hinges), 1):
+        if (wheel := taken.get((each.kind, each.name, each.value))) is not None:
+            table.fail(of_hinges, f'names "{each.text}" for steered wheel {number}, which {of_wheels} names for wheel '
+                       f"{wheel}; a device is on one shaft: give the one that turns with the steering")
 
 
 def _devices(table: Table, key: str, kinds: Sequence[str], count: int, of_what: str) -> tuple[Device, ...]:

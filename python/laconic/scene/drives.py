@@ -11,7 +11,7 @@ Only `laconic replay --inputs set-speeds` runs it; a simulation has voltages and
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -158,7 +158,7 @@ def read_ardupilot(table: Table, wheel_count: int, known: Sequence[str]) -> Ardu
     numbers = {name: read_number(table, name) for name in ("full_V", "full_speed_rad_per_s", "full_steering_rad")}
     if numbers["full_V"] and numbers["full_speed_rad_per_s"]:
         table.fail("full_V", "is given besides full_speed_rad_per_s, so throttle would be two things; keep one of them")
-    channels = tuple(_channel(each, wheel_count, known) for each in table.tables("channel"))
+    channels = _channels(table.tables("channel"), wheel_count, known)
     for name in numbers if channels else ():
         if numbers[name]:
             table.fail(name, "has no effect besides [[ardupilot.channel]], which gives each output its own full value; "
@@ -168,6 +168,24 @@ def read_ardupilot(table: Table, wheel_count: int, known: Sequence[str]) -> Ardu
         table.fail("pwm_us", "must rise from above 0: the pulses for -1, 0 and 1, such as [1000, 1500, 2000]")
     table.done()
     return ArduPilotTable(**numbers, pwm_us=pulses, channels=channels)
+
+
+def _channels(tables: Iterable[Table], wheel_count: int, known: Sequence[str]) -> tuple[Channel, ...]:
+    """All of them; an output may have a second table only for inputs with another full value."""
+    found: list[Channel] = []
+    for table in tables:
+        channel = _channel(table, wheel_count, known)
+        for before, other in enumerate(found, start=1):
+            if other.number != channel.number:
+                continue
+            if twice := [signal for signal in channel.signals if signal in other.signals]:
+                table.fail("signals", f"sets {twice[0]} by output {channel.number}, as channel[{before}] does; keep "
+                           "one of them")
+            if other.full == channel.full:
+                table.fail("number", f"is {channel.number}, as of channel[{before}] with the same full; name all of "
+                           "this output's inputs in the signals of one table, or correct the number")
+        found.append(channel)
+    return tuple(found)
 
 
 def _channel(table: Table, wheel_count: int, known: Sequence[str]) -> Channel:

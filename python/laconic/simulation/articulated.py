@@ -163,6 +163,7 @@ class Rows(KeptRows):
         self._accelerates = "acceleration_body_m_per_s2" in names
         self._friction = float(scene.vehicle["friction_coefficient"])
         self.least_margin: tuple[float, float, int] | None = None  # N, s, number of the wheel
+        self.slipping: set[int] = set()  # numbers of the wheels that would slip in some row
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._parts = [(signal, *parts_of(signal, of_hinge)) for signal in kept]
         self._follows_commands = bool(names & {ANGLE, CURVATURE})
@@ -173,17 +174,27 @@ class Rows(KeptRows):
         """The outputs at the start of a step, in which `row` acts."""
         motion, given = plant.motion(), self._inputs.held_at(tick) if self._follows_commands else {}
         self._folds.take(motion.hinge_angle_rad, tick * self._inputs.step_s)
-        reactions, loads = None, self._loads.of(motion) if self._of_load else None
+        reactions, loads = None, None
+        if self._of_load:
+            loads = self._loads.of(motion, plant.acceleration(row)) if self._loads.height_m else self._loads.of(motion)
         if self._of_ground or self._of_load:
             if loads is not None:
                 self.see_lifted(loads < -NO_LOAD * loads.sum(), tick * self._inputs.step_s)
             reactions = plant.reactions(row, loads)
-        if loads is not None and reactions and (self.least_margin is None
-                                                or reactions.no_slip_margin_N < self.least_margin[0]):
-            self.least_margin = (reactions.no_slip_margin_N, tick * self._inputs.step_s,
-                                 _nearest_to_slip(self._friction * loads, reactions))
+        if loads is not None and reactions:
+            self._judge(self._friction * loads, reactions, tick)
         acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
         self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
+
+    def _judge(self, available_N: np.ndarray, reactions: ArticulatedReactions, tick: int) -> None:
+        """Notes wheels that would slip, and the least margin. A wheel that lifts slips only if it needs a reaction."""
+        needed_N, rounding_N = np.hypot(reactions.along_N, reactions.lateral_N), NO_LOAD * np.abs(available_N).sum()
+        margins = available_N - needed_N
+        margins[(available_N < 0.0) & (needed_N <= rounding_N)] = 0.0
+        if self._friction:
+            self.slipping |= set((np.flatnonzero(margins < -rounding_N) + 1).tolist())
+        if self.least_margin is None or margins.min() < self.least_margin[0]:
+            self.least_margin = (float(margins.min()), tick * self._inputs.step_s, int(np.argmin(margins)) + 1)
 
     def _value(self, part: tuple[str, str, int], motion: ArticulatedMotion, reactions: ArticulatedReactions | None,
                acceleration: np.ndarray, row: np.ndarray, given: dict[str, float]) -> float:
@@ -209,11 +220,6 @@ class Rows(KeptRows):
         if name in (ANGLE, CURVATURE):
             return given.get(signal, 0.0)
         return float(row[self._slots[signal]])
-
-
-def _nearest_to_slip(available_N: np.ndarray, reactions: ArticulatedReactions) -> int:
-    """The number of the wheel with the least margin."""
-    return int(np.argmin(available_N - np.hypot(reactions.along_N, reactions.lateral_N))) + 1
 
 
 def given_start(scene: Scene, vehicle: ArticulatedVehicle) -> dict[str, Any]:

@@ -2,7 +2,8 @@
 
 A vertical hinge carries the body's weight and its tipping moments, so all bodies on hinges stand as one with their
 parents. The hitch of a trailer is a ball: it carries weight alone. Where more points carry than the balance needs, they
-share as springs of one stiffness on a rigid body. Accelerations shift no load here.
+share as springs of one stiffness on a rigid body. An acceleration of the carriage shifts its weight as far as com_z_m
+is high, as of a vehicle without hinges; bodies on hinges count as being at the ground.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ class Loads:
         self._names = names
         self._hinges = [complex(body["hinge_x_m"], body["hinge_y_m"]) for body in vehicle["body"]]
         self._centre = centre_of(vehicle)
+        self.height_m = float(vehicle["com_z_m"])
         self._parents = [0, *(names.index(body["parent"]) for body in vehicle["body"])]
         self._group = [0] * len(names)  # the trailer, or the carriage, with which a body stands
         for b in range(1, len(names)):
@@ -61,9 +63,12 @@ class Loads:
         cosine, sine = math.cos(motion.heading_rad), math.sin(motion.heading_rad)
         return motion.x_m - cosine * x + sine * y, motion.y_m - sine * x - cosine * y
 
-    def of(self, motion: ArticulatedMotion) -> np.ndarray:
-        """The load of each wheel [N], shape (N,)."""
-        return self._carried(self._frames(motion))[0]
+    def of(self, motion: ArticulatedMotion, acceleration_m_per_s2: Sequence[float] | np.ndarray = (0.0, 0.0)
+           ) -> np.ndarray:
+        """The load of each wheel [N], shape (N,). The acceleration is that of body 0's centre of mass, in its axes."""
+        frames = self._frames(motion)
+        shift = -complex(*acceleration_m_per_s2) * frames[0][1] * (self.height_m / GRAVITY_M_PER_S2)
+        return self._carried(frames, shift)[0]
 
     def standing(self, angles_rad: Sequence[float]) -> Standing:
         """How it stands with its hinges at these angles, and why it tips, or a trailer of it."""
@@ -84,13 +89,16 @@ class Loads:
         tips = why_points_tip(np.array([(p.real, p.imag) for p in points]), names, np.array([middle.real, middle.imag]))
         return Standing(tuple(wheels), tuple(supports), tips)
 
-    def _carried(self, frames: list[Frame]) -> tuple[np.ndarray, np.ndarray, Weights]:
-        """Loads of wheels and supports, and what the carriage with its supports and wheels carries."""
+    def _carried(self, frames: list[Frame], shift: complex = 0j) -> tuple[np.ndarray, np.ndarray, Weights]:
+        """Loads of wheels and supports, and what the carriage with its supports and wheels carries. `shift`: of the
+        carriage's own weight, in the world."""
         loads, supports = np.zeros(len(self._wheels)), np.zeros(len(self._supports))
         weights: dict[int, Weights] = {g: [] for g in self._of_group}
         for frame, g, (place, newtons) in zip(frames, self._group, self._weights, strict=True):
             weights[g].append((_at(frame, place), newtons))
-        weights[0] += [(_at(frames[0], place), newtons) for place, newtons in self._payload]
+        (place, newtons), *others = weights[0]  # that of body 0 is the first
+        weights[0] = [(place + shift, newtons), *others]
+        weights[0] += [(_at(frames[0], place) + shift, newtons) for place, newtons in self._payload]
         for g, wheels in self._of_group.items():  # trailers before what they hang on
             points = [_at(frames[b], place) for b, place in (self._wheels[i] for i in wheels)]
             points += [frames[g][0]] if g else [_at(frames[0], place) for place in self._supports]

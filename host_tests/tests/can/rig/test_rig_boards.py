@@ -19,8 +19,8 @@ from laconic.errors import BadInput, Refused
 from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.scene.ground import has_friction
 from laconic.scene.methods import EXACT, EXPLICIT
-from laconic.tools.report.node_sizes import cost_of
 from laconic.tools.trim import needs_of
+from node_sizes import cost_of
 
 pytestmark = pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 FULL = [name for name in BOARDS if "-" not in name]
@@ -55,7 +55,7 @@ def rk4_can(scene: Scene) -> bool:
     return True
 
 
-@pytest.mark.parametrize("share", [10, ALL_STEPS], ids=["a tenth", "all steps"])
+@pytest.mark.parametrize("share", [25, ALL_STEPS], ids=["one step in 25", "all steps"])
 @pytest.mark.parametrize("name", each(FULL))
 def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str, share: int) -> None:
     with emulated_node(name) as node:
@@ -73,7 +73,7 @@ def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: st
 @pytest.mark.parametrize("name", each(BOARDS))
 def test_a_board_that_has_just_been_started_loads_a_vehicle_at_once(name: str, busy: int) -> None:
     with busy_cores(busy):
-        assert [start(name, "kuka_youbot") for _ in range(2)] == [None, None]
+        assert start(name, "kuka_youbot") is None
 
 
 @pytest.mark.parametrize("name", each(FULL))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import struct
 import sys
@@ -420,14 +421,18 @@ def program_of_page(start: str) -> str:
     return start + page.partition(f"```python\n{start}")[2].partition("```")[0]
 
 
-def test_the_rig_of_docs_rig_ports_md_drives_a_shared_node_whose_master_was_there_first() -> None:
+def test_the_rig_of_docs_rig_ports_md_drives_a_shared_node_whose_master_was_there_first(
+        capsys: pytest.CaptureFixture[str]) -> None:
     page = (SOURCE_DIR / "docs/rig-ports.md").read_text(encoding="utf-8")
     command = re.findall(r"^laconic (rig s1 .*:4000 --free-run --steps) 60000$", page, re.M)[0]
     with node_process("double", ID_BASE, "--shared") as port, \
             connected("slcan", f"socket://127.0.0.1:{port}") as node:
         master = Master(node)
         assert master.ask(0xFF, 0)
-        assert run([*command.replace(":4000", f":{port}").split(), "300"]) == 0
+        run([*command.replace(":4000", f":{port}").split(), "300", "--json"])
+        verdicts = json.loads(capsys.readouterr().out)["verdicts"]
+        failed = {each["name"] for each in verdicts if not each["passed"]}
+        assert len(verdicts) > 8 and failed <= {"clock"}  # three tenths of a second of a busy machine tell no clock
         assert master.read(addresses(SCENE)["steps"], "<I") > 200
 
 

@@ -4,6 +4,7 @@ does."""
 from __future__ import annotations
 
 import ast
+import os
 import random
 import re
 import subprocess
@@ -39,6 +40,13 @@ EXAMPLE = re.compile(r"^\* (\w+)\b.*?(?:count|counter) (\d+).*`((?:[0-9A-F]{2} ?
 
 def test_the_page_is_made_from_the_contract_of_today() -> None:
     assert document_wire.page() == PAGE, "run python -m laconic_build.wire.document_wire"
+
+
+def test_the_command_that_the_pages_name_makes_the_page_from_the_root_alone() -> None:
+    code = "from laconic_build.wire import document_wire; print(document_wire.page() == document_wire.PAGE.read_text())"
+    done = subprocess.run([sys.executable, "-c", code], cwd=SOURCE_DIR, capture_output=True, text=True, check=False,
+                          env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"})
+    assert done.stdout == "True\n", done.stderr
 
 
 def test_the_worked_examples_are_what_the_node_computes() -> None:

@@ -108,7 +108,7 @@ def test_a_header_without_the_list_is_refused(tmp_path: Path) -> None:
 
 FIELDS = SOURCE_DIR / "core_c" / "include" / "laconic" / "vehicle.h"
 OF_SENSORS = FIELDS.with_name("sensors.h")
-ROW = "    X(of, 10, FRICTION_COEFFICIENT, friction_coefficient, friction_coefficient, REAL, NOT_NEGATIVE, NEVER)\n"
+ROW = "    X(of, 10, FRICTION_COEFFICIENT,"  # its beginning
 MADE_UP_FIELD = "    X(of, 43, TYRE_WIDTH, tyre_width_m, tyre_width_m, REAL, NOT_NEGATIVE, NEVER) \\\n"
 
 
@@ -134,6 +134,20 @@ def test_a_field_without_its_variable_stops_the_build_with_one_line(tmp_path: Pa
     assert done.stderr == (f"{header}: the row TYRE_WIDTH has no variable tyre_width_m in {DESCRIPTION}; add one "
                            "there, with its description and unit, and run python -m laconic_fmu renew-token "
                            f"{DESCRIPTION}\n")
+
+
+def test_a_variable_out_of_its_order_stops_the_build_with_one_line(tmp_path: Path) -> None:
+    text = DESCRIPTION.read_text(encoding="utf-8")
+    first = text.index('    <Float64 name="mass_kg"')
+    description = tmp_path / "modelDescription.xml"
+    description.write_text(text[:first] + '    <Float64 name="tyre_width_m" valueReference="999" causality="parameter" '
+                           'variability="fixed" start="0"/>\n' + text[first:], encoding="utf-8")
+    laconic_fmu = [sys.executable, "-m", "laconic_fmu"]
+    subprocess.run([*laconic_fmu, "renew-token", str(description)], check=True)
+    done = subprocess.run([*laconic_fmu, "tables", str(description), "--out", str(tmp_path / "made")],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert done.stderr.startswith(f"{description}: tyre_width_m: its value reference is 999")
 
 
 @pytest.mark.parametrize("text", ["", "no list\n"])

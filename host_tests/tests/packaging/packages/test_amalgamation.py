@@ -17,6 +17,7 @@ from laconic.core.articulated import ArticulatedVehicle
 LANGUAGES = {"gcc": ("c99", "c11", "c17"), "clang": ("c99", "c11", "c17"),
              "g++": ("c++11", "c++14", "c++17", "c++20"), "clang++": ("c++11", "c++14", "c++17", "c++20")}
 CASES = [(compiler, standard) for compiler in LANGUAGES if shutil.which(compiler) for standard in LANGUAGES[compiler]]
+USUAL = (("gcc", "c99"), ("clang", "c17"), ("g++", "c++20"), ("clang++", "c++11"))  # the others seldom differ
 STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Werror"]
 CORE = SOURCE_DIR / "core_c"
 TRAJECTORY = CORE / "tests" / "bits" / "trajectory_hash.c"
@@ -44,7 +45,8 @@ def language(compiler: str) -> str:
     return "c++" if compiler.endswith("++") else "c"
 
 
-@pytest.mark.parametrize(("compiler", "standard"), CASES)
+@pytest.mark.parametrize(("compiler", "standard"), [
+    case if case in USUAL else pytest.param(*case, marks=pytest.mark.nightly) for case in CASES])
 def test_it_compiles_without_a_warning_in_every_language_that_it_promises(compiler, standard, pair):
     for name in ("laconic.c", "laconic_single.c"):
         run(compiler, "-x", language(compiler), f"-std={standard}", *STRICT, "-fsyntax-only", name,
@@ -61,9 +63,12 @@ def test_it_compiles_without_a_warning_if_a_part_is_left_out(compiler, part, pai
         folder=pair / "laconic")
 
 
-@pytest.mark.parametrize("bodies", [1, *(pytest.param(each, marks=pytest.mark.nightly) for each in (0, 2))])
+@pytest.mark.nightly
+@pytest.mark.parametrize("bodies", [0, 1, 2])
 def test_an_optimised_build_with_few_bodies_has_no_warning(bodies, pair):
-    """Warnings of values that may not be set need the optimiser, and come where loops over bodies are unrolled."""
+    """Warnings of values that may not be set need the optimiser, and come where loops over bodies are unrolled.
+
+    The test of bits without options builds with one body, by the optimiser, each time."""
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
     run("gcc", "-std=c99", "-O2", *STRICT, f"-DLACONIC_MAX_BODIES={bodies}", "-c", "laconic.c", "-o", os.devnull,
@@ -88,14 +93,14 @@ def test_a_step_compiles_without_a_warning_for_sanitizers_too(tmp_path):
 
 
 @pytest.mark.parametrize(("compiler", "real", "effort"), [
-    ("gcc", "double", "-O2"), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
-        ("clang", "double", "-O1"), ("g++", "single", "-O1")))])
+    ("gcc", "double", ["-O2", "-DLACONIC_MAX_BODIES=1"]), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("gcc", "double", ["-O2"]), ("clang", "double", ["-O1"]), ("g++", "single", ["-O1"])))])
 def test_without_any_option_for_bits_it_has_the_bits_of_the_core(compiler, real, effort, pair):
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")
     info = Path("/proc/cpuinfo")
     fusing = ["-march=x86-64-v3"] if info.exists() and {"avx2", "fma"} <= {*info.read_text().split()} else []
-    options = [effort, *fusing, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+    options = [*effort, *fusing, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
     run(compiler, "-x", language(compiler), *options, *STRICT, "-I.", TRAJECTORY, "laconic/laconic.c", "-o", "hash",
         folder=pair)
     assert run("./hash", folder=pair).split()[:2] == BITS[real]  # then a line for each later method
@@ -202,13 +207,14 @@ def hinged_in_python(real: str) -> list[float]:
     return [at.x_m, at.y_m, at.heading_rad, *map(float, at.hinge_angle_rad), at.energy_J]
 
 
-@pytest.mark.parametrize(("compiler", "real"), [
-    ("gcc", "double"), pytest.param("clang++", "single", marks=pytest.mark.nightly)])
-def test_a_vehicle_with_a_caster_and_a_trailer_has_the_bits_of_the_core(compiler, real, pair):
+@pytest.mark.parametrize(("compiler", "real", "effort"), [
+    ("gcc", "double", "-O0"), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("gcc", "double", "-O1"), ("clang++", "single", "-O1")))])
+def test_a_vehicle_with_a_caster_and_a_trailer_has_the_bits_of_the_core(compiler, real, effort, pair):
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")
     (pair / "hinged.c").write_text(HINGED, encoding="utf-8")
-    options = ["-O1", *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+    options = [effort, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
     run(compiler, "-x", language(compiler), *options, *STRICT, "-I.", "hinged.c", "laconic/laconic.c", "-o", "hinged",
         folder=pair)
     assert [float.fromhex(word) for word in run("./hinged", folder=pair).split()] == hinged_in_python(real)

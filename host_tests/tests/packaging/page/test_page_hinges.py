@@ -131,7 +131,8 @@ def test_a_car_that_is_driven_ends_where_package_and_command_bring_it_bit_by_bit
 
 
 @pytest.mark.parametrize(("robot", "lost"), [("swerve_module_off", "wheels 1, 2 slip"),
-                                             ("trailer_on_ice", "wheels 1, 2, 3, 4, 5, 6 slip")])
+                                             pytest.param("trailer_on_ice", "wheels 1, 2, 3, 4, 5, 6 slip",
+                                                          marks=pytest.mark.nightly)])
 def test_wheels_that_slip_on_hinges_are_shown_and_end_where_the_command_brings_them_bit_by_bit(page, robot, lost,
                                                                                                tmp_path):
     page.choose("robot", robot)
@@ -330,6 +331,7 @@ def test_each_wheel_and_each_hinge_has_a_slider_of_what_it_takes(page, robot, kn
     assert any(set(text) & set("123456789") for text in angles(page))
 
 
+@pytest.mark.nightly
 def test_a_hinge_at_its_stop_is_told_in_one_line_and_another_command_goes_on(page, tmp_path):
     choose(page, "tricycle_agv")
     page.click("[name=drive][value=wheels]")

@@ -186,15 +186,21 @@ SHORT: dict[str, Callable[[Any], Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", ODD)
 @pytest.mark.parametrize("place", SHORT)
-def test_an_odd_value_is_refused_in_one_short_line_or_taken(place: str, name: str) -> None:
-    odd = ODD[name]()
+def test_an_odd_value_is_refused_in_one_short_line_or_taken(place: str) -> None:
+    assert {name: wrong for name, odd in ODD.items() if (wrong := complaint(SHORT[place], odd()))} == {}
+
+
+def complaint(function: Callable[[Any], Any], odd: Any) -> str:
+    """What is wrong with the answer to an odd value; empty where nothing is."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            SHORT[place](odd)
+            function(odd)
         except LaconicError as refused:
             line = str(refused)
-            assert "\n" not in line and len(line) <= LONGEST, line
-            assert not any(word in line for word in ("Error", "Exception", " at 0x")), line
+            is_short_line = "\n" not in line and len(line) <= LONGEST
+            return "" if is_short_line and not any(word in line for word in ("Error", "Exception", " at 0x")) else line
+        except Exception as fault:  # a warning, too
+            return f"{type(fault).__name__}: {fault}"
+    return ""

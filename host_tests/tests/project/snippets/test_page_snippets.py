@@ -33,7 +33,7 @@ OF_THE_READER = {"my.toml": "scenes/kuka_youbot.toml", "robot.urdf": ("docs/tuto
 """Files that pages call by these names: a file of the project, or a page's first snippet in a language."""
 KNOWN = "".join((SOURCE_DIR / "python" / name).read_text(encoding="utf-8") for name in (
     "requirements.in", "requirements-peers.in"))
-SLOW = {"scenes", "control", "rig", "rig-ports", "how-to", "play-drives", "sweep", "accuracy"}
+SLOW = {"c", "ros2", "bags", "scenes", "control", "rig", "rig-ports", "how-to", "play-drives", "sweep", "accuracy"}
 """Pages whose snippets take more than some seconds."""
 PAGES_THAT_RUN = [pytest.param(page, id=str(page.relative_to(SOURCE_DIR)),
                                marks=[pytest.mark.nightly] if page.stem in SLOW else [])

@@ -147,13 +147,21 @@ def test_a_name_ends_as_its_format(scene, capsys, arguments):
     ("fmu", SCENE, "--fmi", "2", "-o", "a/b/run.fmu"),
     ("fmu", SCENE, "--fmi", "2", "--ssp", "-o", "a/b/run.ssp"),
     ("rig", "s1", "--steps", "2", "--log", "a/b/run.blf"), ("rig", "s1", "--steps", "2", "--junit", "a/b/run.xml"),
-    ("trim", SCENE, "--out", "a/b")], ids=" ".join)
+    ("trim", SCENE, "--out", "a/b"), ("rig", SCENE, "--a2l", "a/b/run.a2l"),
+    ("play", "canopen_agv", "--eds", "a/b/run.eds")], ids=" ".join)
 def test_folders_of_an_output_are_made_and_told(scene, capsys, arguments):
     assert run(list(arguments)) == 0
     assert capsys.readouterr().err.count("laconic: made the folder a/b\n") == 1
     made = list(scene.with_name("a").joinpath("b").iterdir())
     assert made and all(path.stat().st_size > 0 for path in made)
     assert not [path for path in made if path.name.startswith(".")]
+
+
+@pytest.mark.parametrize("arguments", [("rig", SCENE, "--a2l", "run.a2l"), ("play", "canopen_agv", "--eds", "run.eds")],
+                         ids=" ".join)
+def test_a_command_that_writes_one_file_says_so(scene, capsys, arguments):
+    assert run(list(arguments)) == 0
+    assert capsys.readouterr().out == f"wrote {arguments[-1]}\n"
 
 
 @pytest.mark.parametrize("command", ["demo", "analyse", "trim", "report", "replay"])

@@ -46,8 +46,21 @@ def test_a_run_without_enough_grip_is_warned_of_once_with_instant_wheel_and_newt
     assert run(["simulate", scene]) == 0
     printed = capsys.readouterr().err
     assert len(printed.splitlines()) == 1
-    assert "slips at 0.5 s (needs " in printed and " N of grip, has 191 N" in printed
-    assert "lifts" not in printed
+    assert "wheels 1, 2, 3 and 4 slip, and first wheel " in printed and " slips at 0.5 s (needs " in printed
+    assert " N of grip, has 191 N" in printed and "lifts" not in printed
+    assert printed.endswith("; ramp the inputs (kind = \"table\") or ask for less, or let wheels slip: give [ground] "
+                            "friction_coefficient in place of vehicle.friction_coefficient\n")
+
+
+def test_the_wheels_that_slip_are_listed_for_programs_and_the_remedy_works(tmp_path, capsys):
+    scene = Path(mecanum(tmp_path, ground="friction_coefficient = 0.6"))
+    assert run(["simulate", str(scene), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["no_slip"]["slipping_wheels"] == [1, 2, 3, 4]
+    scene.write_text(scene.read_text().replace("friction_coefficient = 0.6", "").replace(
+        "[run]", "[ground]\nfriction_coefficient = 0.6\n[run]"))
+    assert run(["simulate", str(scene)]) == 0
+    printed = capsys.readouterr()
+    assert printed.err == "" and "slip and dragging rollers took" in printed.out
 
 
 def test_a_wheel_that_lifts_is_reported_with_its_normal_load(tmp_path, capsys):
@@ -118,7 +131,7 @@ def test_inputs_need_a_file_to_be_written_to(tmp_path, capsys):
 
 def test_a_slip_and_a_lift_of_one_instant_are_told_apart(tmp_path, capsys):
     assert run(["simulate", mecanum(tmp_path, ground="friction_coefficient = 0.2\ncom_z_m = 0.9", volts=80.0)]) == 0
-    slip, _, lift = capsys.readouterr().err.partition(" and ")
+    slip, _, lift = capsys.readouterr().err.partition(") and ")
     assert "slips at 0.5 s (needs " in slip and "normal load" not in slip
     assert "lifts at 0.5 s (normal load -" in lift
 
@@ -183,4 +196,5 @@ def test_one_scene_keeps_the_warning_on_purpose_and_says_so(capsys: pytest.Captu
     scene = read_scene(ON_PURPOSE)
     assert "On purpose" in scene.path.read_text(encoding="utf-8")
     assert run(["simulate", ON_PURPOSE]) == 0
-    assert "the ground cannot give what this run needs: wheel 2 slips at 0 s" in capsys.readouterr().err
+    told = "the ground cannot give what this run needs: wheels 1 and 2 slip, and first wheel 2 slips at 0 s"
+    assert told in capsys.readouterr().err

@@ -22,7 +22,15 @@ import pytest
 
 from laconic import BadInput, Scene, read_scene, simulate
 from laconic.base.paths import SOURCE_DIR
-from laconic.robot.ardupilot.server import Dropped, Frame, Player, Server, play_ardupilot, read_packet
+from laconic.robot.ardupilot.server import (
+    Dropped,
+    Frame,
+    Player,
+    Server,
+    introduction,
+    play_ardupilot,
+    read_packet,
+)
 from laconic.robot.ardupilot.vehicle import Outputs
 from laconic.scene.drives import ArduPilotTable
 from laconic.scene.inputs import Input
@@ -327,6 +335,20 @@ full = 1.0
     assert outputs.values(shares).tolist() == [6.0, 7.0]
 
 
+def test_an_output_with_two_tables_says_so_before_it_starts(tmp_path: Path) -> None:
+    scene = read_scene(with_table(tmp_path, "turtlebot3_burger", """[[ardupilot.channel]]
+number = 2
+signals = ["voltage_V[1]"]
+full = 6.0
+[[ardupilot.channel]]
+number = 2
+signals = ["voltage_V[2]"]
+full = -6.0
+"""))
+    told = introduction(Player(scene, print), 9002)
+    assert "  SERVO2: voltage_V[1] = 6, voltage_V[2] = -6 at 1 (2 tables have this number)" in told
+
+
 @pytest.mark.parametrize(("table", "words"), [
     ("[ardupilot]\nfull_V = 0", "ardupilot.full_V: is 0; give a value above 0"),
     ("[ardupilot]\nfull_V = 1\nfull_speed_rad_per_s = 1", "full_V: is given besides full_speed_rad_per_s"),
@@ -339,7 +361,14 @@ full = 1.0
     ("[[ardupilot.channel]]\nnumber = 1\nsignals = ['wheel_speed_rad_per_s[3]']\nfull = 1", "wheel_speed_rad_per_s[3]"),
     ("[[ardupilot.channel]]\nnumber = 1\nsignals = ['voltage_V[1]']\nfull = 0", "channel[1].full: is 0; give"),
     ("[ardupilot]\nfull_V = 3\n[[ardupilot.channel]]\nnumber = 1\nsignals = ['voltage_V[1]']\nfull = 1",
-     "ardupilot.full_V: has no effect besides [[ardupilot.channel]]")])
+     "ardupilot.full_V: has no effect besides [[ardupilot.channel]]"),
+    ("[[ardupilot.channel]]\nnumber = 2\nsignals = ['voltage_V[1]']\nfull = 1\n"
+     "[[ardupilot.channel]]\nnumber = 2\nsignals = ['voltage_V[2]']\nfull = 1",
+     "channel[2].number: is 2, as of channel[1] with the same full; name all of this output's inputs in the signals of "
+     "one table, or correct the number"),
+    ("[[ardupilot.channel]]\nnumber = 2\nsignals = ['voltage_V[1]']\nfull = 1\n"
+     "[[ardupilot.channel]]\nnumber = 2\nsignals = ['voltage_V[1]']\nfull = 2",
+     "channel[2].signals: sets voltage_V[1] by output 2, as channel[1] does; keep one of them")])
 def test_a_wrong_table_is_refused_in_one_line(tmp_path: Path, table: str, words: str) -> None:
     with pytest.raises(BadInput) as caught:
         read_scene(with_table(tmp_path, "turtlebot3_burger", table))

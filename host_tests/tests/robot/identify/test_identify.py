@@ -16,13 +16,13 @@ from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.study import identify
-from laconic.robot.identify.synthetic import made_up, trials
 from laconic.robot.identify.words import in_words
 from laconic.robot.logs import gather_logs
 from laconic.robot.replay.measures import grand_mean
 from laconic.robot.replay.rolling import rolling_of, rotations_of
 from laconic.scene import read_scene
 from recorded_data import recorded
+from synthetic import made_up, trials
 
 RECORDED = recorded("optiodom")
 needs_records = pytest.mark.skipif(not RECORDED.exists(),
@@ -198,7 +198,8 @@ def test_a_run_without_a_true_pose_or_without_motion_cannot_be_identified_from(t
 @needs_records
 @pytest.mark.parametrize(("robot", "free", "fitted", "left_out"), [
     ("diff", "radius,distance", 0.21, 0.31), ("omni3", "radius,distance", 0.70, 1.45),
-    ("omni4", "radius,distance", 0.63, 1.25), ("omni3", "radius,distance,place", 0.32, 0.75)])
+    *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("omni4", "radius,distance", 0.63, 1.25), ("omni3", "radius,distance,place", 0.32, 0.75)))])
 def test_path_errors_of_the_recorded_robots_are_as_small_as_promised(robot, free, fitted, left_out):
     scene = read_scene(f"optiodom_{robot}")
     logs, _ = gather_logs(sorted(RECORDED.glob(f"{robot}_*")))

@@ -193,10 +193,11 @@ def test_a_mesh_outside_of_the_robots_folder_is_not_opened(tmp_path: Path, uri: 
 
 
 @pytest.mark.parametrize("robot, uri", [
-    ("robot.urdf", "meshes/wheel.obj"), ("urdf/robot.urdf", "../meshes/wheel.obj"),
     ("robots/a/b/robot.urdf", "../../../meshes/wheel.obj"), ("urdf/robot.urdf", "package://kit/meshes/wheel.obj"),
-    ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"), ("urdf/robot.urdf", "package://other/wheel.obj"),
-    ("urdf/robot.urdf", "package://given/wheel.obj"), ("urdf/robot.urdf", "file://{}/../elsewhere/wheel.obj")])
+    ("urdf/robot.urdf", "package://given/wheel.obj"), ("urdf/robot.urdf", "file://{}/../elsewhere/wheel.obj"),
+    *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("robot.urdf", "meshes/wheel.obj"), ("urdf/robot.urdf", "../meshes/wheel.obj"),
+        ("urdf/robot.urdf", "file://{}/meshes/wheel.obj"), ("urdf/robot.urdf", "package://other/wheel.obj")))])
 def test_a_mesh_of_the_robot_its_kit_or_a_package_is_read(tmp_path: Path, robot: str, uri: str) -> None:
     kit = tmp_path / "kit"
     for folder in (kit / "meshes", tmp_path / "other", tmp_path / "elsewhere", (kit / robot).parent):

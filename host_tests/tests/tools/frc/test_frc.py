@@ -400,6 +400,17 @@ def test_a_robot_program_of_its_own_is_driven_through_wpilibs_websocket(
     assert "heard nothing" not in told and json.loads(output)["unusable"] == 0
 
 
+@pytest.mark.parametrize(("keys", "words"), [
+    ({"drive_encoder": '["Encoder[0]", "Encoder[2]", "Encoder[4]", "DutyCycleEncoder[9]"]'},
+     'frc.steering_encoder: names "DutyCycleEncoder[9]" for steered wheel 2, which drive_encoder names for wheel 4; a '
+     "device is on one shaft: give the one that turns with the steering"),
+    ({"steering": '["PWM[4]", "PWM[5]", "-PWM[1]", "PWM[7]"]'},
+     'frc.steering: names "-PWM[1]" for steered wheel 3, which drive names for wheel 2; a device is on one shaft')])
+def test_one_device_for_wheel_and_steering_is_refused(keys: dict[str, str], words: str, tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match=re.escape(words)):
+        read_scene(scene_of(tmp_path, SWERVE, **keys))
+
+
 @pytest.fixture(scope="module")
 def motors() -> list[Any]:
     """Of one robot program: WPILib gives a port once."""

@@ -87,6 +87,7 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")
         write_text(eds, eds_of_scene(scene, given["drives"]))
+        click.echo(f"wrote {eds}")
         return 0
     began = time.perf_counter()
     if is_ardupilot:

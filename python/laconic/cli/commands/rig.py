@@ -91,6 +91,7 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
     if a2l:
         goes_with("--a2l", "--id-base")
         write_text(a2l, a2l_text(scene, read_id_base(options.id_base, scene)))
+        click.echo(f"wrote {a2l}")
         return 0
     return drive(scene, options)
 

@@ -26,6 +26,7 @@ from laconic.cli.options import (
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.core.estimate import Errors, ErrorSizes
+from laconic.core.grip import REMEDY_OF_SLIP, wheels_text
 from laconic.errors import BadInput, Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
 from laconic.pictures.views.recorded import Recorded, signals_of, write_run
@@ -109,8 +110,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         warn(f"{given.path}: {fold.in_words()}")
     if run.least_margin and run.least_margin[0] < 0.0:
         margin, time_s, wheel = run.least_margin
-        warn(f"{given.path}: the ground cannot give what this run needs: worst at {time_s:g} s, where wheel {wheel} "
-             f"would slip, by {-margin:.3g} N")
+        several = f"{wheels_text(run.slipping_wheels)} would slip, " if run.slipping_wheels[1:] else ""
+        warn(f"{given.path}: the ground cannot give what this run needs: {several}worst at {time_s:g} s, where wheel "
+             f"{wheel} would slip, by {-margin:.3g} N; {REMEDY_OF_SLIP}")
     if run.lifted:
         wheel, time_s = run.lifted
         warn(f"{given.path}: at {time_s:g} s wheel {wheel} lifts from the ground; the run holds the vehicle level")
@@ -119,7 +121,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if (standing := resting(run)) and standing.tips:
         warn(f"{given.path}: the robot: {standing.tips}")
     if run.grip and not run.grip.holds:
-        warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
+        warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}; {run.grip.remedy()}")
     if run.refused:
         raise ResultFails(f"{run.refused}{kept_in(*files)}")
 
@@ -233,7 +235,8 @@ def margin_json(run: Trajectory) -> dict[str, Any] | None:
     if run.least_margin is None:
         return None
     margin, time_s, wheel = run.least_margin
-    return {"holds": margin >= 0.0, "least_margin_N": margin, "time_s": time_s, "wheel": wheel}
+    return {"holds": margin >= 0.0, "least_margin_N": margin, "time_s": time_s, "wheel": wheel,
+            "slipping_wheels": list(run.slipping_wheels)}
 
 
 def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:

@@ -241,9 +241,12 @@ def introduction(player: Player, port: int) -> list[str]:
     low, middle, high = player.outputs.table.pwm_us
     lines = [f"outputs, {usual_or_given(player.scene)}; pulses {low:g}, {middle:g}, {high:g} µs for -1, 0, 1:"]
     by_number: dict[int, list[str]] = {}
+    tables = Counter(channel.number for channel in player.scene.ardupilot.channels) if player.scene.ardupilot else {}
     for channel in player.outputs.channels:
         by_number.setdefault(channel.number, []).extend(f"{signal} = {channel.full:g}" for signal in channel.signals)
-    lines += [f"  SERVO{number}: {', '.join(texts)} at 1" for number, texts in sorted(by_number.items())]
+    for number, texts in sorted(by_number.items()):
+        joined = f" ({tables[number]} tables have this number)" if tables.get(number, 0) > 1 else ""
+        lines.append(f"  SERVO{number}: {', '.join(texts)} at 1{joined}")
     more = "" if port == USUAL_PORT else f" --sim-port-out {port}"
     return [*lines, f"listens on {ADDRESS}, UDP port {port}: sim_vehicle.py -v Rover --model JSON:{ADDRESS}"
             + (f" -A \"{more.strip()}\"" if more else ""), UNTESTED]

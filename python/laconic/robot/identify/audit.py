@@ -13,15 +13,16 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot.identify.geometry import geometry_of
+from laconic.robot.identify.geometry import geometry_of, tracker_of
 from laconic.robot.identify.ground import base_of
-from laconic.robot.identify.parameter import Vehicle
+from laconic.robot.identify.parameter import Parameters, Vehicle
 from laconic.robot.identify.rolling_evidence import in_frame, relative, run_of, stretch_errors
 from laconic.robot.identify.solve import Fit
 from laconic.robot.identify.steered_audit import FREE as FREE_OF_STEERED
 from laconic.robot.identify.steered_audit import lag_of_fit, parameters_of
 from laconic.robot.identify.study import Study, fitted_scene, identify
 from laconic.robot.logs import Log
+from laconic.robot.logs.log import POINTS as OF_POSES
 from laconic.robot.logs.poses import at_times
 from laconic.robot.replay.measures import path_errors, path_length
 from laconic.robot.replay.missed_wraps import fitting, rolled_alone
@@ -106,7 +107,10 @@ class Model:
     def fit(self, runs: Sequence[Log], groups: Sequence[str]) -> Study:
         """Finds the values of some groups."""
         if not self.scene.has_hinges:
-            return identify(self.scene, runs, geometry_of(self.scene, groups))
+            of_centre = all(run.pose_point == OF_POSES[1] for run in runs)
+            tracker = tracker_of(of_centre, any(run.has_heading for run in runs))
+            rolling = geometry_of(self.scene, [each for each in groups if each not in FREE[TRACKER]])
+            return identify(self.scene, runs, Parameters((*rolling.each, *tracker)))
         free = parameters_of(self.scene, groups)
         whole, parts = (identify(self.scene, runs, free, whole=each) for each in (True, False))
         return parts if self._error(parts, runs) < CLEARLY * self._error(whole, runs) else whole
@@ -129,7 +133,7 @@ def audit(scene: Scene, logs: Sequence[Log], advance: Callable[..., None] = lamb
     for run in runs:
         run.needs("pose", "an audit")
     model = Model(scene)
-    free = {name: groups for name, groups in model.free.items() if name != TRACKER or _tells_tracker(runs)}
+    free = dict(model.free)
     lag_s = None if LAG in free else lag_of(runs, [model.path(scene.vehicle, run) for run in runs])
     moved = runs if lag_s is None else [without_lag(run, lag_s) for run in runs]
     advance()
@@ -163,10 +167,6 @@ def _with_nominal(study: Study, groups: Sequence[str]) -> Vehicle:
     values = np.array([each.nominal if each.group in groups else value
                        for each, value in zip(parameters.each, study.found.values, strict=True)])
     return parameters.vehicle(base_of(study.scene, parameters), values)
-
-
-def _tells_tracker(runs: Sequence[Log]) -> bool:
-    return all(run.has_heading and run.pose_point == "origin" for run in runs)
 
 
 def error_of(model: Model, vehicle: Vehicle, runs: Sequence[Log]) -> float:

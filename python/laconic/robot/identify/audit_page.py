@@ -31,9 +31,6 @@ PARALLEL_RAD = 0.02     # between axles that count as one direction
 def export(found: Audit, path: Path) -> str:
     """The text for a file of this ending."""
     if path.suffix.lower() == ".toml":
-        if found.scene.has_hinges:
-            raise BadInput(f"--export {path}: a scene with steered wheels is not written; export .yaml or .h, "
-                           "whose numbers go into the scene and the map by hand")
         return fitted_text(found.study)
     if path.suffix.lower() == ".h":
         return header_text(found, path)

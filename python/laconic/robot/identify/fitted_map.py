@@ -12,7 +12,7 @@ from laconic.errors import BadInput
 from laconic.robot.identify.fitted_toml import interval_text
 from laconic.robot.identify.study import Study, fitted_scene
 from laconic.robot.replay.steered_signals import OfLog, curved, of_log
-from laconic.scene.scene_tables import Comments, lines_of
+from laconic.scene.scene_text import Comments, rewritten
 from laconic.scene.table import read_toml
 
 PLACES = {"gain": ("steering_angle", "scale"), "offset_rad": ("steering_angle", "offset"),
@@ -41,7 +41,8 @@ def fitted_map_text(study: Study, map_path: Path) -> str:
             _note(comments, place, interval_text(parameter, float(value), float(half)))
     return "\n".join([f"# {map_path.name}, with what `laconic identify` found for {study.scene.path.name}.",
                       "# Intervals hold the true value with 95 %, if the rest of the model is right; they are of what",
-                      "# is added to the map before it.", *lines_of(data, comments)]) + "\n"
+                      "# is added to the map before it.", "",
+                      rewritten(map_path.read_text(encoding="utf-8-sig"), data, comments)])
 
 
 def _note(comments: Comments, place: tuple[str, ...], text: str) -> None:

@@ -7,20 +7,22 @@ import math
 from typing import Any
 
 from laconic.core.articulated import CARRIAGE
+from laconic.robot.identify.geometry import OF_TRACKER
 from laconic.robot.identify.ground import OF_TREES
 from laconic.robot.identify.parameter import Parameter
 from laconic.robot.identify.report import judgement
 from laconic.robot.identify.study import Study, fitted_scene, parts
 from laconic.robot.logs.for_vehicle import wheels_on_carriage
-from laconic.scene.scene_tables import Comments, lines_of
+from laconic.scene.scene_text import Comments, rewritten
 from laconic.scene.table import read_toml
 
+PLACED_BY = ("distance_m", "bearing_rad", "bearing_deg")
 HUNG_AT = {"caster": ("x_m", "y_m"), "trailer": ("hitch_x_m", "hitch_y_m"), "body": ("hinge_x_m", "hinge_y_m")}
 """The keys of each table that say where on the carriage it hangs."""
 
 
 def fitted_text(study: Study) -> str:
-    """A complete scene."""
+    """A complete scene: the file with other numbers, its own comments kept."""
     data = read_toml(study.scene.path).plain()
     data["source"] = f"{data.get('source', '')}; identified".removeprefix("; ")
     comments: Comments = {}
@@ -36,7 +38,11 @@ def fitted_text(study: Study) -> str:
     head += ["# Intervals hold the true value with 95 %, if the rest of the model is right. In words:"]
     head += [f"#   {word}" for word in study.words]
     head += [f"# {line}" for line in judgement(study)]
-    return "\n".join([*head, *lines_of(data, comments)]) + "\n"
+    if of_map := [p for p in study.found.parameters.each if p.path.startswith("log.")]:
+        head += ["# These belong to the log's map, which --map-out writes; this scene does not have them:",
+                 *(f"#   {_interval(study, p.path)}" for p in of_map)]
+    text = study.scene.path.read_text(encoding="utf-8-sig")
+    return "\n".join([*head, "", rewritten(text, data, comments)])
 
 
 def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> None:
@@ -49,6 +55,9 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
         tables["ground",] = data.setdefault("ground", {})
         tables["ground",].update({key: after["ground"][key] for key in after["ground"] if not key.startswith("slope_")})
     _rewrite_places(study, data["vehicle"], after, comments)
+    if after.get("wheel_radius_m") != study.scene.vehicle.get("wheel_radius_m"):
+        data["vehicle"]["wheel_radius_m"] = after["wheel_radius_m"]
+        comments["vehicle", "wheel_radius_m"] = _of_group(study, "radius")
     for key, value in after.get("motor", {}).items():  # the back-EMF's constant follows the torque's
         if value != study.scene.vehicle["motor"][key]:
             data["vehicle"]["motor"][key] = value
@@ -68,8 +77,7 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
 def _rewrite_hinges(study: Study, data: dict[str, Any], comments: Comments) -> None:
     """Places of steered wheels, trails of casters, and what wheels have on ground with friction."""
     before, after = study.scene.vehicle, fitted_scene(study.scene, study.found).vehicle
-    notes = {group: "; ".join(_interval(study, p.path) for p in study.found.parameters.each if p.group == group)
-             for group in ("wheelbase", "track")}
+    notes = {group: _of_group(study, group, "distance") for group in ("wheelbase", "track")}
     bodies = {body["name"]: (body, was) for body, was in zip(after["body"], before["body"], strict=True)}
     for index, wheel in enumerate(data["wheel"]):
         now, place = after["wheel"][index], ("vehicle", "wheel", str(index))
@@ -81,7 +89,7 @@ def _rewrite_hinges(study: Study, data: dict[str, Any], comments: Comments) -> N
                     study, f"vehicle.wheel[{'*' if key == 'scrub_fade_m' else which}].{key}")
         if "steered" in wheel:
             _move(wheel, ("x_m", "y_m"), *bodies[now["body"]], place, notes, comments)
-        elif now["y_m"] != before["wheel"][index]["y_m"]:
+        elif now["y_m"] != before["wheel"][index]["y_m"] and now["x_m"] == before["wheel"][index]["x_m"]:
             comments[(*place, "x_m")], comments[(*place, "y_m")] = "", notes["track"]
     for index, body in enumerate(data.get("body", ())):
         _move(body, ("hinge_x_m", "hinge_y_m"), *bodies[body["name"]], ("vehicle", "body", str(index)), notes, comments)
@@ -98,13 +106,18 @@ def _move(table: dict[str, Any], keys: tuple[str, str], now: dict[str, Any], was
     """A hinge that a fit has moved."""
     for key, own, group in zip(keys, ("hinge_x_m", "hinge_y_m"), ("wheelbase", "track"), strict=True):
         if now[own] != was[own]:
+            if table.keys() & {*PLACED_BY}:  # by distance and bearing, which the place replaces
+                table.update(zip(keys, (now["hinge_x_m"], now["hinge_y_m"]), strict=True))
+            for other in PLACED_BY:
+                table.pop(other, None)
             table[key] = now[own]
             comments[(*place, key)] = notes[group]
 
 
 def _that_move(study: Study) -> list[Parameter]:
     """The parameters by which parts of the robot are elsewhere."""
-    return [p for p in study.found.parameters.each if p.group in ("distance", "place", "heading")]
+    return [p for p in study.found.parameters.each if p.group in ("distance", "place", "heading")
+            and not p.path.startswith("log.")]
 
 
 def _rewrite_places(study: Study, data: dict[str, Any], after: dict[str, Any], comments: Comments) -> None:
@@ -129,8 +142,9 @@ def _move_hung(study: Study, data: dict[str, Any], comments: Comments) -> None:
               if p.group in ("place", "heading")}
     if not values:
         return
-    turn = cmath.exp(1j * values.get("vehicle.*.heading", 0.0))
-    shift = complex(*(values.get(f"vehicle.*.{key}", 0.0) for key in ("x_m", "y_m")))
+    heading, *place_m = (values.get(f"vehicle.*.{key}", 0.0) - values.get(OF_TRACKER[key], 0.0)
+                         for key in ("heading", "x_m", "y_m"))
+    turn, shift = cmath.exp(1j * heading), complex(*place_m)
     for table, keys in HUNG_AT.items():
         for index, part in enumerate(data.get(table, ())):
             if part.get("parent", CARRIAGE) == CARRIAGE:
@@ -145,14 +159,16 @@ def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments
     location = ("vehicle", "wheel", str(row))
     if after.get("radius_m") != before.get("radius_m"):
         wheel["radius_m"] = after["radius_m"]
-        comments[(*location, "radius_m")] = _interval(study, f"vehicle.wheel[{index + 1}].radius_m")
+        of_one = f"vehicle.wheel[{index + 1}].radius_m"
+        is_own = any(p.path == of_one for p in study.found.parameters.each)
+        comments[(*location, "radius_m")] = _interval(study, of_one) if is_own else _of_group(study, "radius")
     if after.get("friction_coefficient") != before.get("friction_coefficient"):
         wheel["friction_coefficient"] = after["friction_coefficient"]
         comments[(*location, "friction_coefficient")] = _interval(
             study, f"vehicle.wheel[{index + 1}].friction_coefficient")
     moved = _that_move(study)
     if (after["x_m"], after["y_m"]) != (before["x_m"], before["y_m"]):
-        for key in ("distance_m", "bearing_rad", "bearing_deg"):
+        for key in PLACED_BY:
             wheel.pop(key, None)
         wheel["x_m"], wheel["y_m"] = after["x_m"], after["y_m"]
         comments[(*location, "x_m")] = "; ".join(_interval(study, p.path) for p in moved)
@@ -179,6 +195,10 @@ def _interval(study: Study, path: str) -> str:
         if parameter.path == path:
             return interval_text(parameter, float(value), float(half))
     return "turned with all wheels" if not study.scene.has_hinges else ""
+
+
+def _of_group(study: Study, *groups: str) -> str:
+    return "; ".join(_interval(study, p.path) for p in study.found.parameters.each if p.group in groups)
 
 
 def interval_text(parameter: Parameter, value: float, half: float) -> str:

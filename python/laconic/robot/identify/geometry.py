@@ -17,6 +17,7 @@ PLACE_SD_M = 0.03
 ANGLE_SD_RAD = math.radians(2.0)
 OF_CARRIAGE = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller")
 GROUPS = (*OF_CARRIAGE, *ground.GROUPS, *motion.GROUPS)
+OF_TRACKER = {key: f"tracker.{key}" for key in ("x_m", "y_m", "heading")}   # paths of an audit's parameters
 LEAST_SHARE = 0.05                    # of a nominal radius or distance: below it no wheel can be
 ROLLED = (*OF_CARRIAGE, "clock-lag")
 """What paths by rolling tell of a carriage, with or without casters and trailers behind it."""
@@ -26,7 +27,10 @@ def usual(scene: Scene) -> tuple[str, ...]:
     """What is free by default, by what drives and steers the vehicle."""
     if not scene.has_hinges:
         return ("radius", "distance")
-    return ("radius", "track") if is_free(scene) else ("radius", "wheelbase", "steering-gain", "steering-offset")
+    if is_free(scene):
+        return "radius", "track"
+    return "radius", "wheelbase" if steered.axle_of(scene.vehicle) is not None else "distance", "steering-gain", \
+        "steering-offset"
 
 
 def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE_SD) -> Parameters:
@@ -37,6 +41,8 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
         **motion.MAKERS, **{name: steered.MAKERS[name] for name in steered.FOR_ALL}}
     if scene.has_hinges:
         makers = {**steered.MAKERS, "common-radius": _common_radius, "friction": ground.MAKERS["friction"]}
+        if steered.axle_of(scene.vehicle) is None:  # all wheels steer: no axle from which a wheelbase counts
+            makers["distance"] = lambda scene, relative_sd: [steered.distance_of(scene, relative_sd)]
         if {"steering-curve", "steering-gain"} <= set(free):
             raise BadInput("--free steering-curve: says what steering-gain says, and more; take one of them")
     found: list[Parameter] = []
@@ -128,18 +134,36 @@ def _centre_of_mass(scene: Scene, relative_sd: float) -> list[Parameter]:
 
 def _heading(scene: Scene, relative_sd: float) -> list[Parameter]:
     """How far the whole robot is turned in the frame whose pose the log gives."""
-    def write(vehicle: Vehicle, value: float) -> None:
-        cos, sin = math.cos(value), math.sin(value)
-        x, y = vehicle["com_x_m"], vehicle["com_y_m"]
-        vehicle["com_x_m"], vehicle["com_y_m"] = cos * x - sin * y, sin * x + cos * y
-        for part in parts_of(vehicle):
-            x, y = part["x_m"], part["y_m"]
-            part["x_m"], part["y_m"] = cos * x - sin * y, sin * x + cos * y
-        for wheel in vehicle["wheel"]:
-            wheel["axle_rad"] += value
-
-    return [Parameter("heading of the robot", "vehicle.*.heading", "heading", "rad", 0.0, ANGLE_SD_RAD, write)
+    return [Parameter("heading of the robot", "vehicle.*.heading", "heading", "rad", 0.0, ANGLE_SD_RAD, _turn)
             for _ in scene.vehicle["wheel"][:1]]
+
+
+def _turn(vehicle: Vehicle, angle: float) -> None:
+    cos, sin = math.cos(angle), math.sin(angle)
+    x, y = vehicle["com_x_m"], vehicle["com_y_m"]
+    vehicle["com_x_m"], vehicle["com_y_m"] = cos * x - sin * y, sin * x + cos * y
+    for part in parts_of(vehicle):
+        x, y = part["x_m"], part["y_m"]
+        part["x_m"], part["y_m"] = cos * x - sin * y, sin * x + cos * y
+    for wheel in vehicle["wheel"]:
+        wheel["axle_rad"] += angle
+
+
+def tracker_of(is_centre: bool, has_heading: bool) -> list[Parameter]:
+    """Place and heading of the tracker on a robot without hinges: the robot is placed in the tracker's frame. With
+    `is_centre` the log has the pose of the centre of mass, which is moved alone then."""
+    def writer(key: str) -> Callable[[Vehicle, float], None]:
+        def write(vehicle: Vehicle, value: float) -> None:
+            vehicle[f"com_{key}"] += value if is_centre else -value
+            for part in () if is_centre else parts_of(vehicle):
+                part[key] -= value
+        return write
+
+    found = [Parameter(f"place of the tracker, {key[0]}", f"vehicle.com_{key}" if is_centre else OF_TRACKER[key],
+                       "place", "m", 0.0, PLACE_SD_M, writer(key)) for key in ("x_m", "y_m")]
+    heading = Parameter("heading of the tracker", OF_TRACKER["heading"], "heading", "rad", 0.0, ANGLE_SD_RAD,
+                        lambda vehicle, value: _turn(vehicle, -value))
+    return [*found, heading] if has_heading else found
 
 
 def _axles(scene: Scene, relative_sd: float) -> list[Parameter]:

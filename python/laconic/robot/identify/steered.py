@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
 from laconic.core.articulated import CARRIAGE
-from laconic.robot.identify.parameter import Parameter, Vehicle
+from laconic.robot.identify.parameter import Parameter, Parameters, Vehicle
+from laconic.robot.logs.for_vehicle import free_hinges, measuring, wheels_behind
+from laconic.robot.logs.log import Log
 from laconic.robot.replay.rolling import wheel_radii
 from laconic.robot.replay.steered_rolling import STEERED, fixed_wheels
 from laconic.robot.replay.steered_signals import Fitted, OfLog
@@ -72,22 +74,42 @@ def _rate(scene: Scene, relative_sd: float) -> list[Parameter]:
 
 
 def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
-    """Of the driven wheels: nobody measures the others."""
-    def write(index: int, vehicle: Vehicle, value: float) -> None:
+    """Of the driven wheels; the runs say whether others are measured."""
+    return [_radius(scene, i, relative_sd) for i, wheel in enumerate(scene.vehicle["wheel"])
+            if wheel.get("driven", True)]
+
+
+def _radius(scene: Scene, index: int, relative_sd: float) -> Parameter:
+    def write(vehicle: Vehicle, value: float) -> None:
         vehicle["wheel"][index]["radius_m"] = value
 
-    return [Parameter(f"radius of wheel {i + 1}", f"vehicle.wheel[{i + 1}].radius_m", "radius", "m", radius,
-                      relative_sd * radius, partial(write, i), relative_sd * radius, low=LEAST_SHARE * radius)
-            for i, radius in enumerate(wheel_radii(scene.vehicle)) if scene.vehicle["wheel"][i].get("driven", True)]
+    radius = float(wheel_radii(scene.vehicle)[index])
+    return Parameter(f"radius of wheel {index + 1}", f"vehicle.wheel[{index + 1}].radius_m", "radius", "m", radius,
+                     relative_sd * radius, write, relative_sd * radius, low=LEAST_SHARE * radius)
+
+
+def with_measuring(scene: Scene, runs: Sequence[Log], parameters: Parameters) -> Parameters:
+    """With the radii of undriven wheels that runs measure, where those of the driven ones are free: wrong, they would
+    distort all else."""
+    radii = [p for p in parameters.each if p.path.startswith("vehicle.wheel[") and p.group == "radius" and p.unit]
+    if not scene.has_hinges or not radii:
+        return parameters
+    relative_sd = radii[0].prior_sd / radii[0].nominal
+    more = [_radius(scene, index, relative_sd) for index in sorted({i for run in runs for i in measuring(run, scene)})]
+    place = parameters.each.index(radii[-1]) + 1
+    return Parameters((*parameters.each[:place], *more, *parameters.each[place:]))
 
 
 def radius_of_all(scene: Scene, relative_sd: float) -> Parameter:
     """One factor for all wheels, and for a commanded speed."""
-    radii = wheel_radii(scene.vehicle)
+    free = wheels_behind(scene, free_hinges(scene))  # which nobody measures
 
     def write(vehicle: Vehicle, value: float) -> None:
-        for wheel, radius in zip(vehicle["wheel"], radii, strict=True):
-            wheel["radius_m"] = value * float(radius)
+        if vehicle.get("wheel_radius_m"):
+            vehicle["wheel_radius_m"] *= value
+        for index, wheel in enumerate(vehicle["wheel"]):
+            if wheel.get("radius_m") and index not in free:
+                wheel["radius_m"] *= value
         _log(vehicle).speed_gain = value
 
     return Parameter("radius of the wheels, factor", "vehicle.wheel[*].radius_m", "radius", "", 1.0, relative_sd, write,

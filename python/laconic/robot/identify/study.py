@@ -12,7 +12,7 @@ from laconic.robot.identify.evidence import MEASURE, errors_of, evidence_of, kin
 from laconic.robot.identify.ground import OF_TREES, base_of, need_currents
 from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, fit, values_by_name
-from laconic.robot.identify.steered import SLIPPING
+from laconic.robot.identify.steered import SLIPPING, with_measuring
 from laconic.robot.identify.steered_evidence import SteeredEvidence
 from laconic.robot.identify.words import in_words, with_errors
 from laconic.robot.identify.words_of_errors import of_errors
@@ -63,6 +63,7 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
     """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it. `whole`: by whole
     paths, for an audit of a vehicle with hinges, whose fit counts stretches otherwise."""
     runs, others = (fitting(scene, given) for given in (logs, judge))
+    parameters = with_measuring(scene, [*runs, *others], parameters)
     need_currents(parameters, runs, scene)
     found = _fit(scene, runs, parameters, whole=whole)
     advance()

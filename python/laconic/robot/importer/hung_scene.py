@@ -15,7 +15,7 @@ from laconic.robot.importer.hung import CARRIAGE, COORDINATED, FREE, PRESCRIBED,
 from laconic.robot.importer.placement import Array
 from laconic.robot.importer.robot_tree import Joint
 from laconic.robot.importer.wheels import FoundWheel
-from laconic.scene.scene_tables import Comments
+from laconic.scene.scene_text import Comments
 
 RATE_RAD_PER_S = 1.0  # of a prescribed hinge whose file states none
 STRAIGHT_DEG = -90.0

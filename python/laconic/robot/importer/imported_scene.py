@@ -36,7 +36,7 @@ from laconic.robot.importer.surfaces import grips_along
 from laconic.robot.importer.wheels import FoundWheel, Ground, find_wheels
 from laconic.scene import Scene, scene_of
 from laconic.scene.axle_lines import meeting_point
-from laconic.scene.scene_tables import Comments, lines_of
+from laconic.scene.scene_text import Comments, lines_of
 from laconic.scene.standing import Standing, standing_of
 from laconic.scene.table import Table
 

@@ -210,23 +210,14 @@ def without_free(log: Log, scene: Scene) -> Log:
         f"hinge {name}" for name in log.hinge_names if name in free])
 
 
-def driven_alone(log: Log, scene: Scene) -> Log:
-    """The log without turning of wheels that roll along, where driven ones tell the way: a fit frees the radii of those
-    alone."""
-    is_driven = np.array([wheel.get("driven", True) for wheel in scene.vehicle["wheel"]])
+def measuring(log: Log, scene: Scene) -> list[int]:
+    """Indices of wheels that roll along and whose turning tells the way: their hinges have angles."""
     values = log.wheel_angle_rad if log.wheel_angle_rad is not None else log.wheel_speed_rad_per_s
-    if values is None or values.shape[1] != len(is_driven):
-        return log
-    measured = ~np.isnan(values).any(axis=0)
-    others = measured & ~is_driven
-    others[wheels_behind(scene, free_hinges(scene) - {*log.hinge_names})] = False
-    if not others.any() or not (measured & is_driven).any():
-        return log
-    found = _reordered(log, lambda of_wheels: np.where(others, np.nan, of_wheels))
-    names = ", ".join(f"wheel {index + 1}" for index in np.flatnonzero(others))
-    return replace(found, remarks=(*log.remarks, f"{names}: how far it turns is left out, as it is not driven"
-                                   if others.sum() == 1 else
-                                   f"{names}: how far they turn is left out, as they are not driven"))
+    if values is None or values.shape[1] != len(scene.vehicle["wheel"]):
+        return []
+    loose = wheels_behind(scene, free_hinges(scene) - {*log.hinge_names})
+    return [index for index, wheel in enumerate(scene.vehicle["wheel"]) if not wheel.get("driven", True)
+            and index not in loose and not np.isnan(values[:, index]).any()]
 
 
 def wheels_behind(scene: Scene, names: Container[str]) -> list[int]:

@@ -12,7 +12,7 @@ import numpy as np
 from laconic.robot.logs.for_vehicle import corner_of, words_of
 from laconic.robot.logs.units import LATITUDE, LONGITUDE
 from laconic.robot.logs.wraps import wrap_of
-from laconic.scene.scene_tables import value_text
+from laconic.scene.scene_text import value_text
 
 FEWEST_WHEELS, MOST_WHEELS = 2, 8
 HALF_TURN_DEG = 50.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.errors import BadInput, Refused
 from laconic.robot.logs import Log
-from laconic.robot.logs.for_vehicle import carriage_of, driven_alone, for_carriage, for_vehicle, without_free
+from laconic.robot.logs.for_vehicle import carriage_of, for_carriage, for_vehicle, without_free
 from laconic.robot.logs.log import POINTS
 from laconic.robot.logs.wraps import REMEDY
 from laconic.robot.replay.rolling import Rolling, rolling_of, rotations_of
@@ -39,7 +39,7 @@ def fitting(scene: Scene, logs: Sequence[Log]) -> list[Log]:
     """The logs for the scene's vehicle; a remark names the first row whose counter missed a part of its range."""
     if scene.has_hinges:
         return [part for log in logs for part in parts_of(
-            _examined(scene, driven_alone(without_free(for_vehicle(log, scene.vehicle), scene), scene)))]
+            _examined(scene, without_free(for_vehicle(log, scene.vehicle), scene)))]
     return [_examined(scene, for_vehicle(log, scene.vehicle)) for log in logs]
 
 

@@ -55,10 +55,13 @@ class SteeredSlip(SteeredRolling):
         return self._slid(vehicle, run, angles, moved, speeds, held, STEP_S / DIVIDED[-1])
 
     def _held(self, run: Driven) -> list[int]:
-        """The wheels whose speeds are given."""
-        if run.way_m is None:
-            return [int(i) for i in np.flatnonzero(~np.isnan(run.rotation_rad).any(axis=0))]
-        return [i for i, wheel in enumerate(self.scene.vehicle["wheel"]) if wheel.get("driven", True)]
+        """The wheels whose speeds are given: driven ones, as others only roll along; those, too, where no driven one is
+        measured."""
+        driven = [i for i, wheel in enumerate(self.scene.vehicle["wheel"]) if wheel.get("driven", True)]
+        if run.way_m is not None:
+            return driven
+        measured = [int(i) for i in np.flatnonzero(~np.isnan(run.rotation_rad).any(axis=0))]
+        return [i for i in measured if i in driven] or measured
 
     def _speeds(self, log: Log, run: Driven, moved: np.ndarray) -> np.ndarray:
         """Of each wheel between two instants; of commands as they roll without slip."""

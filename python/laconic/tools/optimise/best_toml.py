@@ -6,7 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 
 from laconic.scene.key_path import EVERY, KeyPath, key_path
-from laconic.scene.scene_tables import SceneTables, value_text
+from laconic.scene.scene_tables import SceneTables
+from laconic.scene.scene_text import value_text
 from laconic.scene.table import entries_of
 from laconic.tools.optimise.candidates import values_of
 from laconic.tools.optimise.study import Result
