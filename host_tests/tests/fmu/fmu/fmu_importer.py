@@ -7,12 +7,14 @@ import re
 import shutil
 import subprocess
 import tempfile
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import cffi
 import fmpy
+import lark
 
 from laconic.base.paths import build_dir, built
 
@@ -22,6 +24,21 @@ TYPES_3 = {"Float64": "Float64", "Int32": "Int32", "UInt64": "UInt64", "Int64": 
 TYPES_2 = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
 C_TYPES = {"Real": "double", "Integer": "int", "Float64": "double", "Int32": "int32_t", "UInt64": "uint64_t",
            "Int64": "int64_t"}
+NEEDED = ("modelDescription.xml", "binaries/", "resources/", "extra/")
+
+
+class KnownNames(lark.Lark):
+    """FMPy checks each variable's name by a slow grammar, in every FMU anew: a name found legal is not read again."""
+
+    legal: ClassVar[set[tuple[str, str]]] = set()
+
+    def parse(self, text: str, *_: Any, **__: Any) -> None:
+        if (self.source_grammar, text) not in self.legal:
+            super().parse(text)
+            self.legal.add((self.source_grammar, text))
+
+
+lark.Lark = KnownNames  # FMPy imports it when it checks names
 
 
 @functools.cache
@@ -51,7 +68,8 @@ def unpacked(fmu: Path) -> tuple[Path, Any]:
     key = (fmu, about.st_mtime_ns, about.st_size)
     if key not in _unpacked:
         folder = tempfile.TemporaryDirectory()
-        fmpy.extract(str(fmu), unzipdir=folder.name)
+        with zipfile.ZipFile(fmu) as archive:  # what an importer needs; sources and pictures are five files of six
+            archive.extractall(folder.name, [name for name in archive.namelist() if name.startswith(NEEDED)])
         _unpacked[key] = folder, fmpy.read_model_description(folder.name, validate=False)
     folder, description = _unpacked[key]
     return Path(folder.name), description

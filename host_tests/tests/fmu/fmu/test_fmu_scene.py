@@ -130,8 +130,9 @@ def test_the_default_experiments_step_divides_the_run_whatever_the_number_of_ste
     assert steps % round(step_s / 0.001) == 0
 
 
-@BOTH
-@pytest.mark.parametrize("name", rigid_scene_names())
+@pytest.mark.parametrize("name, version", [
+    pytest.param(name, version, marks=pytest.mark.nightly if (number + version) % 2 else [])
+    for number, name in enumerate(rigid_scene_names()) for version in (2, 3)])  # at night each in both versions
 def test_an_importer_that_takes_the_default_experiment_writes_no_more_than_a_thousand_rows(
         version: int, name: str, tmp_path: Path) -> None:
     fmu = make_fmu(read_scene(name), tmp_path / "x.fmu", version=version, sources=False)

@@ -356,8 +356,8 @@ CAR = recorded("f1tenth")
 
 @pytest.mark.skipif(not CAR.is_dir(), reason="recorded runs are not here")
 @pytest.mark.parametrize(("name", "nominal", "left"), [
-    ("skidpad_ccw_clean_v_0_5_d_0_416", 0.1, 0.003), ("slalom_clean_v_1_5_d_0_416", 0.1, 0.003),
-    ("teleop_teleop_02", 0.04, 0.01)])
+    ("skidpad_ccw_clean_v_0_5_d_0_416", 0.1, 0.003), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("slalom_clean_v_1_5_d_0_416", 0.1, 0.003), ("teleop_teleop_02", 0.04, 0.01)))])
 def test_a_recorded_car_is_audited_by_the_map_that_is_guessed(name, nominal, left, tmp_path, capsys):
     """Each run leaves little once it is fitted by the same means as identify has: the stretches lead to the path."""
     log, mapping = CAR / f"{name}.csv", tmp_path / "map.toml"
