@@ -581,14 +581,17 @@ typedef struct laconic_grip_event {
 
 /* Whether the no-slip model was true. Start from all zero. */
 typedef struct laconic_grip {
-    uint64_t instants, slipping, lifting;      /* instants watched; those with a slip, with a lifted point   */
-    laconic_grip_event first_slip, worst_slip; /* worst: least margin                              */
-    laconic_grip_event first_lift, worst_lift; /* worst: least normal load                         */
-    bool wheel_slips[LACONIC_MAX_WHEELS];      /* at some instant                                  */
+    uint64_t instants, slipping, lifting;        /* instants watched; those with a slip, with a lifted point   */
+    laconic_grip_event first_slip, worst_slip;   /* worst: least margin                              */
+    laconic_grip_event first_lift, worst_lift;   /* worst: least normal load                         */
+    bool wheel_slips[LACONIC_MAX_WHEELS];        /* at some instant                                  */
+    laconic_sum slip_loss_J[LACONIC_MAX_WHEELS]; /* on ground with friction: of each wheel, by what the ends of the
+                                                    recorded steps show; their sum is that of the plant's book */
 } laconic_grip;
 
 /* Enters one instant. Slip is judged only where the contact has a friction coefficient. A margin or normal load below 0
- * by less than the rank tolerance times the weight is rounding and counts as neither slip nor lift. */
+ * by less than the rank tolerance times the weight is rounding and counts as neither slip nor lift. Where the ground
+ * has friction a recorder enters besides which wheels slipped in the step before, and what it took. */
 void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, const laconic_model *model,
                         const laconic_reactions *reactions, uint64_t steps);
 

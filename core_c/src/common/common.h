@@ -149,6 +149,7 @@ static inline bool has_friction(const laconic_plant *plant) {
 
 /* Of a plant with friction. */
 void laconic_friction_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
+void laconic_friction_watch(laconic_grip *grip, const laconic_plant *plant);
 void laconic_friction_reactions_of(laconic_reactions *reactions, const laconic_plant *plant,
                                    const laconic_input *input);
 

@@ -78,6 +78,21 @@ void laconic_friction_reactions_of(laconic_reactions *out, const laconic_plant *
     }
 }
 
+/* The first instant belongs to a step that nobody watched. */
+void laconic_friction_watch(laconic_grip *grip, const laconic_plant *plant) {
+    const laconic_friction *f = &plant->friction;
+    const laconic_slip *s = &plant->slip;
+    const vector nu = zeta_of(&plant->state);
+    const real moved_m = f->radius_m * plant->integrator.step_s;
+    for (int32_t i = 0; grip->instants > 1 && i < f->wheel_count; i++) {
+        real slipped[2];
+        slip_of(slipped, &f->wheel[i], nu, s->wheel_speed_rad_per_s[i]);
+        if (contact_state(f, s, i, slipped) == R(1)) grip->wheel_slips[i] = true;
+        sum_add(&grip->slip_loss_J[i],
+                moved_m * (s->grip_N[i][0] * slipped[0] + f->wheel[i].drag * s->grip_N[i][1] * slipped[1]));
+    }
+}
+
 /* ------------------------------------------------------------------------- the smooth law -- */
 
 /* Force of one contact on the body over M R, by slip/√(slip² + ε²) instead of its direction. */

@@ -18,6 +18,10 @@ static void observe(laconic_recorder *recorder, const laconic_plant *plant, cons
         laconic_plant_reactions(&now.reactions, plant, recorder->contact, input);
         if (recorder->grip != NULL)
             laconic_grip_watch(recorder->grip, recorder->contact, &plant->model, &now.reactions, plant->steps);
+#if LACONIC_WITH_FRICTION
+        if (recorder->grip != NULL && plant->friction.acts && plant->friction.slips)
+            laconic_friction_watch(recorder->grip, plant);
+#endif
     }
     if (!row_due) return;
     laconic_outputs_of(&now, plant, input);

@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -189,9 +190,23 @@ def test_forces_along_and_lateral_against_the_slips_take_the_energy_that_slip_lo
 def test_a_run_names_the_wheels_that_slipped(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["simulate", "swerve_module_off"]) == 0
     told = capsys.readouterr().out
-    assert "J, wheels 1 and 2 slipped; contact_state and slip_along_m_per_s of [outputs] tell when" in told
+    both = r"contact_state, slip_along_m_per_s and slip_across_m_per_s of \[outputs\] tell when"
+    assert re.search(rf"J, wheels 1 and 2 slipped \([\d.]+ J, [\d.]+ J\); {both}", told)
     assert run(["simulate", "skid_steer"]) == 0
-    assert "J; contact_state and slip_along_m_per_s of [outputs] tell where" in capsys.readouterr().out
+    assert re.search(rf"J, wheels 1, 2, 3 and 4 slipped \((?:[\d.]+ J, ){{3}}[\d.]+ J\); {both}",
+                     capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("name", ["swerve_module_off", "trailer_on_ice", "skid_steer", "robotino_grey"])
+def test_the_wheels_that_slip_are_listed_for_programs_with_the_energy_of_each(
+        name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["simulate", name, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["no_slip"]
+    assert found["holds"] is None and bool(found["slipping_wheels"]) == (name != "robotino_grey")
+    each_J = found["wheel_slip_loss_J"]
+    least_J = max(1e-6, 1e-3 * found["slip_loss_J"])
+    assert found["slipping_wheels"] == [i + 1 for i, loss_J in enumerate(each_J) if loss_J > least_J]
+    assert sum(each_J) == pytest.approx(found["slip_loss_J"], rel=1e-6, abs=1e-9)
 
 
 def test_a_picture_shows_slip_loads_and_energy(tmp_path: Path) -> None:

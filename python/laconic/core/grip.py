@@ -42,19 +42,24 @@ class Grip:
     worst_lift: GripEvent | None
     slipping_wheels: tuple[int, ...] = ()  # that slipped at some instant, counted from 1
     slip_loss_J: float | None = None    # given where wheels slip by the ground's friction: then nothing must not slip
+    wheel_slip_loss_J: tuple[float, ...] | None = None  # the same of each wheel, by what the ends of steps show
 
     @classmethod
     def of(cls, grip: Any, plant: Plant, step_s: float) -> Grip:
         """From a laconic_grip; `step_s` as it was given, which single precision does not keep."""
         events = {name: event_of(getattr(grip, name), plant, step_s)
                   for name in ("first_slip", "worst_slip", "first_lift", "worst_lift")}
-        vehicle, loss_J = plant.c.vehicle, None
+        vehicle, loss_J, each_J = plant.c.vehicle, None, None
         if plant.has_friction and plant.c.friction.slips:
             loss_J = float(plant.c.slip.slip_loss_J.value)
+            each_J = tuple(float(grip.slip_loss_J[i].value) for i in range(plant.wheel_count))
+        slipped = [bool(grip.wheel_slips[i]) for i in range(plant.wheel_count)]
+        wheels = tuple(i + 1 for i, slips in enumerate(slipped) if slips)
+        if each_J is not None:
+            wheels = losing_wheels(slipped, each_J, ROLLED * vehicle.mass_kg * vehicle.wheel_radius_m)
         return cls(float(vehicle.friction_coefficient or vehicle.ground.friction_coefficient) or None,
                    int(grip.instants), int(grip.slipping), int(grip.lifting), **events,
-                   slipping_wheels=tuple(i + 1 for i in range(plant.wheel_count) if grip.wheel_slips[i]),
-                   slip_loss_J=loss_J)
+                   slipping_wheels=wheels, slip_loss_J=loss_J, wheel_slip_loss_J=each_J)
 
     @property
     def holds(self) -> bool:
@@ -64,7 +69,7 @@ class Grip:
     def as_json(self) -> dict[str, Any]:
         """Machine-readable. Where wheels slip by the ground's friction, there is no condition to hold: null."""
         found = {"holds": self.holds, **{name: _of_json(each) for name, each in asdict(self).items()}}
-        return found if self.slip_loss_J is None else found | {"holds": None, "slipping": None, "slipping_wheels": None}
+        return found if self.slip_loss_J is None else found | {"holds": None, "slipping": None}
 
     def warning(self) -> str:
         """The events in one line; "" where every reaction was available."""
@@ -98,6 +103,16 @@ class Grip:
 
 REMEDY_OF_SLIP = ("ramp the inputs (kind = \"table\") or ask for less, or let wheels slip: give [ground] "
                   "friction_coefficient in place of vehicle.friction_coefficient")
+
+
+ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the radius, slid with all of its weight
+LEAST_SHARE = 1e-3           # of all that slip took: a wheel that took less touched its limit and did not slip
+
+
+def losing_wheels(slipped: Sequence[bool], loss_J: Sequence[float], rounding_J: float) -> tuple[int, ...]:
+    """Numbers of the wheels that slipped in some step and lost more than rounding and LEAST_SHARE of all losses."""
+    least_J = max(rounding_J, LEAST_SHARE * sum(loss_J))
+    return tuple(i + 1 for i, lost_J in enumerate(loss_J) if slipped[i] and lost_J > least_J)
 
 
 def wheels_text(wheels: Sequence[int]) -> str:

@@ -10,6 +10,7 @@ The table is that of laconic.ArticulatedVehicle, with a ground that has friction
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -242,8 +243,8 @@ class SlippingPlant(OwnMemory):
         row = self.vehicle.row_of(inputs)
         self.follow(np.broadcast_to(row, (step_count("steps", steps), row.size)))
 
-    def follow(self, rows: np.ndarray) -> None:
-        """One step for each of `rows`, shape (steps, numbers of a row), held over the step."""
+    def follow(self, rows: np.ndarray, watch: SlipWatch | None = None) -> None:
+        """One step for each of `rows`, shape (steps, numbers of a row), held over the step and seen by `watch`."""
         lib, ffi, model, why = self.core.lib, self.core.ffi, self.vehicle.model, self.core.why()
         size = tree_row_length(self.core)
         table = np.ascontiguousarray(rows, self.core.dtype)
@@ -254,6 +255,8 @@ class SlippingPlant(OwnMemory):
             if lib.laconic_tree_step(model, self.step_s, self.c, held + at, why) != 0:
                 raise self.core.refusal(why)
             self.steps += 1
+            if watch:
+                watch.see()
 
     def save(self) -> Any:
         """A copy of the state, for `restore`."""
@@ -298,3 +301,35 @@ class SlippingPlant(OwnMemory):
         if name in WHOLE:
             return np.array([int(value[i]) for i in range(length)])
         return self.core.numbers(value)[:length]
+
+
+class SlipWatch:
+    """Which wheels of a plant slipped, and what slip and scrub took at each of them.
+
+    The forces of a step act at its middle angles of the hinges: half a step before those of its end, at the new rates.
+    """
+
+    def __init__(self, plant: SlippingPlant):
+        core, wheels = plant.core, plant.vehicle.wheel_count
+        self._plant, self._seen = plant, core.ffi.new("laconic_tree_outputs *")
+        self._middle = core.ffi.new("laconic_tree_state *")
+        self._turn = 1 << 8 * core.ffi.sizeof("laconic_binary_angle")
+        self._along_N, self._lateral_N, self._scrub_Nm, self._along, self._across = (
+            np.frombuffer(core.ffi.buffer(getattr(self._seen, name)), core.dtype)[:wheels] for name in (
+                "along_N", "lateral_N", "scrub_Nm", "slip_along_m_per_s", "slip_across_m_per_s"))
+        self._state = np.frombuffer(core.ffi.buffer(self._seen.contact_state), np.int32)[:wheels]
+        self._twists = np.frombuffer(core.ffi.buffer(plant.c.body), core.dtype).reshape(-1, 3)
+        self._bodies = [int(plant.vehicle.model.wheel[i].body) for i in range(wheels)]
+        self.slipped, self.loss_J = np.zeros(wheels, bool), np.zeros(wheels)
+
+    def see(self) -> None:
+        """The end of a step."""
+        plant, middle = self._plant, self._middle
+        middle[0] = plant.c[0]
+        for b in range(plant.vehicle.body_count):
+            back = round(0.5 * plant.step_s * float(middle.z[3 + b]) / math.tau * self._turn)
+            middle.hinge[b].fraction = (int(middle.hinge[b].fraction) - back) % self._turn
+        plant.core.lib.laconic_tree_outputs_of(self._seen, plant.vehicle.model, middle)
+        self.slipped |= self._state == 1
+        self.loss_J += plant.step_s * (self._lateral_N * self._across - self._along_N * self._along
+                                       - self._scrub_Nm * self._twists[self._bodies, 2])

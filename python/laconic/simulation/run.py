@@ -73,6 +73,7 @@ class Trajectory:
     least_margin: tuple[float, float, int] | None = None  # with hinges and friction known: N, when in s, which wheel
     slipping_wheels: tuple[int, ...] = ()  # with hinges: those that slipped, or would slip, in some row
     slip_loss_J: float | None = None  # with hinges where wheels may slip: what slip and scrub took
+    wheel_slip_loss_J: tuple[float, ...] = ()  # the same at each wheel, by what the ends of steps show
 
     def __repr__(self) -> str:
         """In one line: its arrays have thousands of numbers."""
@@ -255,8 +256,8 @@ def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, e
     if isinstance(rows, Rows):
         run.least_margin = rows.least_margin
     run.slipping_wheels = tuple(sorted(rows.slipping))
-    if isinstance(plant, SlippingPlant):
-        run.slip_loss_J = slip_loss_of(plant)
+    if isinstance(found, SlippingRun):
+        run.slip_loss_J, run.wheel_slip_loss_J = slip_loss_of(found.plant), found.wheel_loss_J
     if isinstance(found, HingedRun) and found.parts and len(rows):
         run.errors, run.error_columns = found.parts.read(), found.parts.columns()
     if found.refused:

@@ -17,7 +17,8 @@ import numpy as np
 
 from laconic.base.progress import Advance
 from laconic.core.articulated_input import input_slots
-from laconic.core.slipping import TARGET, SlippingOutputs, SlippingPlant, SlippingVehicle, tree_row_length
+from laconic.core.grip import ROLLED, losing_wheels
+from laconic.core.slipping import TARGET, SlippingOutputs, SlippingPlant, SlippingVehicle, SlipWatch, tree_row_length
 from laconic.core.spelling import wrapped
 from laconic.errors import Refused
 from laconic.scene import Scene
@@ -28,7 +29,7 @@ from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
 CHUNK = 2048  # steps whose inputs are made ready at once
-SLIPS, LIFTED = 1, 2  # of a contact_state
+LIFTED = 2  # of a contact_state
 MIDDLE, END = 1, 2  # of the samples of a step: start, middle, end
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
          "hinge_rate_rad_per_s", "hinge_reaction_Nm", "wheel_speed_rad_per_s", "wheel_angle_rad", "slip_along_m_per_s",
@@ -136,7 +137,7 @@ class SlippingRows(KeptRows):
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._values = [_reader(signal, of_hinge, wheels, vehicle) for signal in kept]
         self._of_commands = any(signal.partition("[")[0] in (ANGLE, CURVATURE, TWIST) for signal in kept)
-        self.slipping: set[int] = set()  # numbers of the wheels that slipped in some row
+        self.slipping: set[int] = set()  # numbers of the wheels that slipped in some step
         self._place = {name: kept.index(name) for name in ("origin_x_m", "origin_y_m") if name in kept}
 
     def take(self, plant: SlippingPlant, row: np.ndarray, tick: int) -> None:
@@ -144,7 +145,6 @@ class SlippingRows(KeptRows):
         found = plant.outputs()
         self._folds.take(found.motion.hinge_angle_rad, tick * self._inputs.step_s)
         self.see_lifted(found.contact_state == LIFTED, tick * self._inputs.step_s)
-        self.slipping |= set((np.flatnonzero(found.contact_state == SLIPS) + 1).tolist())
         given = self._inputs.held_at(tick) if self._of_commands else {}
         values = [read(found, row, given) for read in self._values]
         for name, at in self._place.items():
@@ -206,6 +206,7 @@ class SlippingRun:
     commands: SlippingCommands
     seconds: float
     refused: Refused | None
+    wheel_loss_J: tuple[float, ...]  # what slip and scrub took at each wheel
 
 
 def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) -> SlippingRun:
@@ -213,7 +214,7 @@ def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) 
     vehicle, inputs = scene.slipping_vehicle(scene.core()), scene.inputs_on_grid()
     commands = SlippingCommands(scene, vehicle, inputs)
     plant = start_slipping(scene, vehicle, commands.start_angles())
-    rows, refused = SlippingRows(scene, vehicle, inputs, kept), None
+    rows, watch, refused = SlippingRows(scene, vehicle, inputs, kept), SlipWatch(plant), None
     last, began = np.zeros(tree_row_length(vehicle.core)), time.perf_counter()
     try:
         for first in range(0, inputs.steps, CHUNK):
@@ -224,7 +225,7 @@ def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) 
                 if begin % every == 0:
                     rows.take(plant, table[begin - first], begin)
                 until = min(first + len(table), (begin // every + 1) * every)
-                plant.follow(table[begin - first : until - first])
+                plant.follow(table[begin - first : until - first], watch)
                 begin = until
             moved(len(table))
             if commands.refused:
@@ -235,4 +236,7 @@ def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) 
             raise refused from None
     if refused is None or len(rows) <= -(-plant.steps // every):
         rows.take(plant, last, plant.steps)
-    return SlippingRun(plant, rows, commands, time.perf_counter() - began, refused)
+    body = scene.vehicle
+    rows.slipping = set(losing_wheels(watch.slipped.tolist(), watch.loss_J.tolist(),
+                                      ROLLED * body["mass_kg"] * body["wheel_radius_m"]))
+    return SlippingRun(plant, rows, commands, time.perf_counter() - began, refused, tuple(watch.loss_J.tolist()))

@@ -26,7 +26,7 @@ from laconic.cli.options import (
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.core.estimate import Errors, ErrorSizes
-from laconic.core.grip import REMEDY_OF_SLIP, wheels_text
+from laconic.core.grip import REMEDY_OF_SLIP, ROLLED, wheels_text
 from laconic.errors import BadInput, Refused, ResultFails
 from laconic.pictures.film.moving_picture import FILMED, write_film
 from laconic.pictures.views.recorded import Recorded, signals_of, write_run
@@ -40,7 +40,6 @@ from laconic.simulation.loads import Loads
 from laconic.simulation.run import is_watched
 
 FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
-ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the radius, slid with all of its weight
 
 
 @click.command("simulate")
@@ -231,7 +230,11 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
 
 
 def margin_json(run: Trajectory) -> dict[str, Any] | None:
-    """The least distance from slip of a run with hinges, judged by loads at rest; None where no friction is known."""
+    """Of a run with hinges where wheels slip, which did and what it took; else the least distance from slip, judged by
+    loads at rest. None where no friction is known."""
+    if run.slip_loss_J is not None:
+        return {"holds": None, "slipping_wheels": list(run.slipping_wheels), "slip_loss_J": run.slip_loss_J,
+                "wheel_slip_loss_J": list(run.wheel_slip_loss_J)}
     if run.least_margin is None:
         return None
     margin, time_s, wheel = run.least_margin
@@ -247,15 +250,19 @@ def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:
 
 def words_of_slip(run: Trajectory) -> list[str]:
     """What slip took on ground with friction, and whether the step is longer than its first order deserves."""
-    slip_loss_J = run.grip.slip_loss_J if run.grip else run.slip_loss_J
+    grip = run.grip
+    slip_loss_J = grip.slip_loss_J if grip else run.slip_loss_J
     if slip_loss_J is None:
         return []
+    wheels = grip.slipping_wheels if grip else run.slipping_wheels
+    each_J = (grip.wheel_slip_loss_J if grip else None) or run.wheel_slip_loss_J
     loss_J, step_s, vehicle = slip_loss_J, run.scene.run.step_s, run.scene.vehicle
     rounding_J = ROLLED * vehicle["mass_kg"] * vehicle["wheel_radius_m"]
     what = "slip and scrub" if run.scene.has_hinges else "slip and dragging rollers"
-    named = f", {wheels_text(run.slipping_wheels)} slipped" if run.slipping_wheels else ""
-    told = [f"{what} took {loss_J:.3g} J{named}; contact_state and slip_along_m_per_s of [outputs] tell "
-            f"{'when' if named else 'where'}" if loss_J > rounding_J else "no wheel slipped"]
+    sizes = ", ".join(f"{each_J[i - 1]:.3g} J" for i in wheels)
+    named = f", {wheels_text(wheels)} slipped ({sizes})" if wheels else ""
+    told = [f"{what} took {loss_J:.3g} J{named}; contact_state, slip_along_m_per_s and slip_across_m_per_s of "
+            f"[outputs] tell {'when' if named else 'where'}" if loss_J > rounding_J else "no wheel slipped"]
     if step_s > FRICTION_STEP_S:
         told.append("ground with friction is stepped to first order, and losses are the first to be off: compare "
                     f"path and losses with --step {FRICTION_STEP_S:g}")
