@@ -162,9 +162,9 @@ def test_the_supply_limits_motors_of_wheels_and_of_steering() -> None:
 def test_a_run_names_the_wheels_that_slipped(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["simulate", "swerve_module_off"]) == 0
     told = capsys.readouterr().out
-    assert "J, wheels 1 and 2 slipped; contact_state and slip_along_m_per_s of [outputs] tell when" in told
+    assert "J, wheels 1 and 2 slipped (when: contact_state, slip_along_m_per_s in [outputs])" in told
     assert run(["simulate", "skid_steer"]) == 0
-    assert "J; contact_state and slip_along_m_per_s of [outputs] tell where" in capsys.readouterr().out
+    assert "J (which wheels: contact_state, slip_along_m_per_s in [outputs])" in capsys.readouterr().out
 
 
 def test_a_picture_shows_slip_loads_and_energy(tmp_path: Path) -> None:

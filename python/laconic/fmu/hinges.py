@@ -128,14 +128,12 @@ def left_out(scene: Scene) -> str:
                (hinge.has_stops and not _stops_itself(scene, hinge))]
     found = []
     if limited:
-        found.append(f"the FMU has no limits of angle and rate: those of {', '.join(limited)} are left out; keep to "
-                     "them in what steers it")
+        found.append(f"the FMU does not limit angle and rate of {', '.join(limited)}; do so in your controller")
     there = [f"{ANGLE}[{hinge.name}]" for hinge in scene.hinges if hinge.follows == "angle"]
     words = SLIPPING_INSTEAD if scene.slips_on_hinges else INSTEAD
     commands = dict.fromkeys(each.signal for each in scene.inputs
                              if each.signal.partition("[")[0] in words and each.signal not in there)
     if commands:
         instead = dict.fromkeys(words[each.partition("[")[0]] for each in commands)
-        found.append(f"the FMU has no inputs {', '.join(commands)}, which the scene steers by; give "
-                     f"{' and '.join(instead)}")
-    return f"{scene.path}: {'; '.join(found)}" if found else ""
+        found.append(f"in place of {', '.join(commands)} give {' and '.join(instead)}")
+    return f"{scene.path}: {'; '.join(found)}: see docs/fmu.md" if found else ""

@@ -60,7 +60,7 @@ def test_the_wheels_that_slip_are_listed_for_programs_and_the_remedy_works(tmp_p
         "[run]", "[ground]\nfriction_coefficient = 0.6\n[run]"))
     assert run(["simulate", str(scene)]) == 0
     printed = capsys.readouterr()
-    assert printed.err == "" and "slip and dragging rollers took" in printed.out
+    assert printed.err == "" and "energy lost by slip and dragging rollers: " in printed.out
 
 
 def test_a_wheel_that_lifts_is_reported_with_its_normal_load(tmp_path, capsys):
@@ -153,7 +153,7 @@ def test_a_run_whose_wheels_slip_is_not_said_to_hold_the_ground(tmp_path, capsys
     assert found["slip_loss_J"] > 10.0
 
 
-@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (60.0, "slip and dragging rollers took ")])
+@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (60.0, "energy lost by slip and dragging ")])
 def test_a_run_on_ground_with_friction_ends_with_what_slip_took(
         tmp_path: Path, capsys: pytest.CaptureFixture[str], volts: float, told: str) -> None:
     scene = Path(mecanum(tmp_path, ground="com_z_m = 0.3", volts=volts))

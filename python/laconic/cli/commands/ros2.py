@@ -54,7 +54,7 @@ MOST_ENDS = 5  # robots whose last pose is printed
 @click.option("--shared-tf", "shares_tf", is_flag=True, help="/tf for all, with the namespace before each frame.")
 @click.option("--urdf", type=InputPath(), metavar="FILE", help="Publish this file as robot_description.")
 @click.option("--loopback", "is_loopback", is_flag=True,
-              help="For Nav2 without localization: initialpose, and map → odom by the true pose.")
+              help="For Nav2 without localization: initialpose, and map → odom from the exact pose.")
 @click.option("--map", "map_file", type=InputPath(), metavar="FILE.yaml",
               help="With --loopback: publish this map, and the scan that the robot sees in it.")
 @click.option("--no-discovery-info", "is_silent", is_flag=True, help="Leave the node out of the graph.")
