@@ -29,10 +29,11 @@ OF_WHEEL = {"load_N": "given_load_N", "creep": "wheel_creep"}
 
 
 INSTEAD = {CURVATURE: "steering_twist and steering_twist_rate",
-           ANGLE: "steering_rate_rad_per_s of prescribed hinges, and steering_twist of coordinated ones"}
-"""Inputs of scenes that the FMU does not have, and what it takes instead."""
-SLIPPING_INSTEAD = dict.fromkeys((CURVATURE, ANGLE, TWIST), "steering_rate_rad_per_s of prescribed hinges, and "
-                                                            "steering_angle_rad of servos")
+           ANGLE: "steering_twist and steering_twist_rate", f"{ANGLE}[": "steering_rate_rad_per_s of prescribed hinges"}
+"""Inputs of scenes that the FMU does not have, and its inputs that replace them. The angle without a name is that of
+coordinated hinges; with a name, that of a prescribed one."""
+SLIPPING_INSTEAD = dict.fromkeys((CURVATURE, ANGLE, f"{ANGLE}[", TWIST), "steering_rate_rad_per_s of prescribed "
+                                                                         "hinges, and steering_angle_rad of servos")
 """The same on ground with friction."""
 
 
@@ -134,6 +135,7 @@ def left_out(scene: Scene) -> str:
     commands = dict.fromkeys(each.signal for each in scene.inputs
                              if each.signal.partition("[")[0] in words and each.signal not in there)
     if commands:
-        instead = dict.fromkeys(words[each.partition("[")[0]] for each in commands)
+        instead = dict.fromkeys(words[f"{ANGLE}[" if each.startswith(f"{ANGLE}[") else each.partition("[")[0]]
+                                for each in commands)
         found.append(f"in place of {', '.join(commands)} give {' and '.join(instead)}")
     return f"{scene.path}: {'; '.join(found)}: see docs/fmu.md" if found else ""
