@@ -56,35 +56,36 @@ typedef struct view {
 
 /* As much acceleration as allowed while the motion could still stop after the next step, else as little as stops at the
  * target: in the frame of the target, whose speed is zero there. */
-static laconic_real acceleration(const drive_motion *motion, const view *seen, laconic_real step_s) {
-    const laconic_real along = seen->speed - seen->target_speed, most = motion->deceleration;
+static laconic_real acceleration(const drive_motion *motion, const view *course, laconic_real step_s) {
+    const laconic_real along = course->speed - course->target_speed, most = motion->deceleration;
     const laconic_real faster = along + motion->acceleration * step_s;
-    if (real_magnitude(seen->speed) > motion->speed_limit) return seen->speed > 0 ? -most : most;
+    if (real_magnitude(course->speed) > motion->speed_limit) return course->speed > 0 ? -most : most;
     if (along < 0) return most;
-    if (seen->way - (along + faster) / 2 * step_s >= faster * faster / (2 * most))
-        return real_magnitude(seen->speed) < motion->speed_limit ? motion->acceleration : 0;
-    const laconic_real needed = along * along / (2 * seen->way);
-    return needed < most ? -needed : -most;
+    if (course->way - (along + faster) / 2 * step_s >= faster * faster / (2 * most))
+        return real_magnitude(course->speed) < motion->speed_limit ? motion->acceleration : 0;
+    const laconic_real braking = along * along / (2 * course->way);
+    return braking < most ? -braking : -most;
 }
 
 /* True once the target is as near as a step comes. */
-static bool ramp(const drive_motion *motion, view *seen, laconic_real step_s) {
-    const laconic_real before = seen->speed, limit = motion->speed_limit;
+static bool ramp(const drive_motion *motion, view *course, laconic_real step_s) {
+    const laconic_real before = course->speed, limit = motion->speed_limit;
     const laconic_real step = motion->deceleration * step_s;
-    laconic_real after = before + acceleration(motion, seen, step_s) * step_s;
+    laconic_real after = before + acceleration(motion, course, step_s) * step_s;
     if ((real_magnitude(before) - limit) * (real_magnitude(after) - limit) < 0) after = after < 0 ? -limit : limit;
-    seen->speed = after;
-    const laconic_real off = real_magnitude(after - seen->target_speed), target = real_magnitude(seen->target_speed);
-    const bool crossed = (before - seen->target_speed) * (after - seen->target_speed) <= 0;
-    return (crossed || off < step) && seen->way <= ((off > target ? off : target) * 2 + step) * step_s;
+    course->speed = after;
+    const laconic_real off = real_magnitude(after - course->target_speed),
+                       target = real_magnitude(course->target_speed);
+    const bool is_crossed = (before - course->target_speed) * (after - course->target_speed) <= 0;
+    return (is_crossed || off < step) && course->way <= ((off > target ? off : target) * 2 + step) * step_s;
 }
 
 bool motion_step(drive_motion *motion, laconic_real step_s) {
     const laconic_real distance = place_counts(place_difference(motion->target, motion->place));
     const laconic_real side = distance < 0 ? -1 : 1, before = motion->speed;
-    view seen = {distance * side, before * side, motion->target_speed * side};
-    const bool arrives = ramp(motion, &seen, step_s);
-    motion->speed = arrives ? motion->target_speed : seen.speed * side;
+    view course = {distance * side, before * side, motion->target_speed * side};
+    const bool arrives = ramp(motion, &course, step_s);
+    motion->speed = arrives ? motion->target_speed : course.speed * side;
     motion->target = place_moved(motion->target, motion->target_speed * step_s);
     motion->place = arrives ? motion->target : place_moved(motion->place, (before + motion->speed) / 2 * step_s);
     return arrives;

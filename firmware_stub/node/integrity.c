@@ -170,13 +170,13 @@ static void seal_motion(laconic_integrity *it, const laconic_node *node) {
 }
 
 /* A node that has no vehicle has nothing to lose, and FAULT means that there is one. */
-static void fail(laconic_integrity *it, laconic_node *node, uint8_t broken) {
-    const laconic_refusal why = {.status = (laconic_status)LACONIC_WIRE_STATUS_MEMORY_CHANGED, .item = broken};
-    it->broken = broken;
+static void fail(laconic_integrity *it, laconic_node *node, uint8_t checks) {
+    const laconic_refusal why = {.status = (laconic_status)LACONIC_WIRE_STATUS_MEMORY_CHANGED, .item = checks};
+    it->broken = checks;
     node->pending = 0; /* what waits may be what is wrong */
     node->answers_due = 0;
 #if LACONIC_NODE_WITH_ESTIMATE
-    if (broken == LACONIC_INTEGRITY_OF_MODEL) node->estimates = false;
+    if (checks == LACONIC_INTEGRITY_OF_MODEL) node->estimates = false;
 #endif
     if (it->has_vehicle) {
         laconic_node_fail(node, &why, 0);
@@ -246,13 +246,13 @@ static bool is_possible(const laconic_node *node, const laconic_integrity_limits
 
 /* One slice further; at the end of a round, whether all is as it was. */
 static void see_slice(laconic_integrity *it, laconic_node *node) {
-    const memory_part *here = &model_parts[it->part];
-    const uint32_t rest_bytes = here->size - it->at;
+    const memory_part *memory = &model_parts[it->part];
+    const uint32_t rest_bytes = memory->size - it->at;
     const uint32_t count = rest_bytes < LACONIC_INTEGRITY_SLICE ? rest_bytes : LACONIC_INTEGRITY_SLICE;
-    add_bytes(&it->running, (const uint8_t *)node + here->offset + it->at, count);
+    add_bytes(&it->running, (const uint8_t *)node + memory->offset + it->at, count);
     it->slices++;
     it->at += count;
-    if (it->at < here->size) return;
+    if (it->at < memory->size) return;
     it->at = 0;
     it->part++;
     if (it->part < PARTS(model_parts)) return;

@@ -79,9 +79,7 @@ static laconic_status set_tree_start(laconic_node_hinges *hinges, const laconic_
     return laconic_tree_state_set(&hinges->tree, &hinges->tree_model, &start, why);
 }
 
-static bool is_to_slip(const laconic_parameters *new) {
-    return new->vehicle.ground.friction_coefficient != 0;
-}
+static bool is_to_slip(const laconic_parameters *new) { return new->vehicle.ground.friction_coefficient != 0; }
 #endif
 
 static laconic_status prepare(laconic_node_hinges *fresh, const laconic_parameters *new, laconic_refusal *why) {

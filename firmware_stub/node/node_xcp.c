@@ -209,9 +209,9 @@ void laconic_xcp_on_frame(laconic_node *node, const laconic_frame *frame) {
     xcp->answers = true;
 }
 
-static laconic_xcp_packet event_packet(uint8_t event, bool *waits) {
+static laconic_xcp_packet event_packet(uint8_t event, bool *is_waiting) {
     const laconic_xcp_packet packet = {2, {PACKET_EVENT, event}};
-    *waits = false;
+    *is_waiting = false;
     return packet;
 }
 

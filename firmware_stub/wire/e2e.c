@@ -37,12 +37,12 @@ bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, laconic_e
     return length >= LACONIC_E2E_P05_HEADER && (data[0] | (data[1] << 8)) == p05_crc(data, length, ends);
 }
 
-static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t lost) {
+static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t lost_count) {
     receiver->known = true;
     receiver->counter = counter;
     receiver->stray_count = 0;
-    receiver->lost = lost;
-    return lost == 0 ? LACONIC_E2E_OK : LACONIC_E2E_OK_SOME_LOST;
+    receiver->lost = lost_count;
+    return lost_count == 0 ? LACONIC_E2E_OK : LACONIC_E2E_OK_SOME_LOST;
 }
 
 /* The counter of a refused frame is kept apart from the reference, so that old frames cannot change the reference. */

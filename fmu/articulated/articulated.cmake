@@ -13,7 +13,7 @@ laconic_fmu(LaconicArticulated
     FOLDER articulated
     ICONS vehicle
     SHARED vehicle/core_words.c vehicle/core_words.h vehicle/serialize_core.h
-    SOURCES model.c state.c idle.c loads.c serialize.c
+    SOURCES model.c state.c loads.c serialize.c
     HEADERS model.h variable_locations.h parts.h hinged_run.h
     CORE ${core_files} ${articulated_files}
     CORE_OBJECTS laconic_fmu_articulated)

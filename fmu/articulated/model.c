@@ -6,6 +6,45 @@
 
 void fmu_model_made(fmu_model *model) { (void)model; /* all vehicles have the same states */ }
 
+/* ------------------------------------------------------------------------- inputs without effect -- */
+
+static const fmu_idle_input idle_inputs[] = {
+    {"voltage_V", "V", "this wheel has no motor (wheel_undriven, or a motor gain of 0)"},
+    {"hinge_voltage_V", "V", "this hinge has no motor (body_hinge, hinge_gain_Nm_per_V)"},
+    {"hinge_torque_Nm", "N m", "this hinge is commanded (body_hinge), whatever torque that takes"},
+    {"steering_rate_rad_per_s", "rad/s", "this hinge is not prescribed (body_hinge)"},
+    {"steering_acceleration_rad_per_s2", "rad/s2", "this hinge is not prescribed (body_hinge)"},
+    {"steering_twist", "", "no hinge is coordinated (body_hinge)"},
+    {"steering_twist_rate", "", "no hinge is coordinated (body_hinge)"},
+};
+
+static void warn(fmu_instance *instance, unsigned kind, int32_t element, double value) {
+    fmu_warn_idle(instance, &idle_inputs[kind], kind, element, value);
+}
+
+static void check_hinge(fmu_instance *instance, int32_t b) {
+    const laconic_articulated_input *u = &instance->model.input;
+    const laconic_link *link = &instance->model.prepared.link[b];
+    const bool commanded = link->motion == LACONIC_MOTION_PRESCRIBED || link->motion == LACONIC_MOTION_COORDINATED;
+    if (commanded || link->gain_Nm_per_V == 0.0) warn(instance, 1, b, u->hinge_voltage_V[b]);
+    if (commanded) warn(instance, 2, b, u->hinge_torque_Nm[b]);
+    if (link->motion == LACONIC_MOTION_PRESCRIBED) return;
+    warn(instance, 3, b, u->hinge_rate_rad_per_s[b]);
+    warn(instance, 4, b, u->hinge_acceleration_rad_per_s2[b]);
+}
+
+static void check_idle(fmu_instance *instance) {
+    const fmu_model *self = &instance->model;
+    const laconic_articulated_model *m = &self->prepared;
+    for (int32_t i = 0; i < m->wheel_count; i++)
+        if (m->wheel[i].gain_Nm_per_V == 0.0) warn(instance, 0, i, self->input.base.voltage_V[i]);
+    for (int32_t b = 0; b < m->body_count; b++) check_hinge(instance, b);
+    for (int32_t k = 0; !m->coordinated && k < 3; k++) {
+        warn(instance, 5, k, k == 0 ? 0.0 : self->input.twist[k]); /* the start value points straight ahead */
+        warn(instance, 6, k, self->input.twist_rate[k]);
+    }
+}
+
 /* ------------------------------------------------------------------------------------- start -- */
 
 /* Without step_s, Co-Simulation knows its internal step only at its first communication step, Model Exchange never. */
@@ -33,7 +72,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     if (status != LACONIC_OK) return fmu_refuse_with(instance, &why, "this vehicle cannot start");
     if (!allowed) return fmu_articulated_refuse_start(instance);
     mark_as_started(self);
-    fmu_articulated_check_idle(instance);
+    check_idle(instance);
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUP_PLACE);
     return FMU_OK;
 }
@@ -120,7 +159,7 @@ void fmu_model_input_changed(fmu_instance *instance) {
         return;
     }
     self->stale |= FMU_GROUPS_OF_INPUT;
-    fmu_articulated_check_idle(instance);
+    check_idle(instance);
     if (!self->continuous || !commands_differ(&self->input, &self->commanded)) return;
     if (instance->mode == FMU_EVENT)
         self->change_needed = self->jump_needed = true;

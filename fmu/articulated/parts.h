@@ -17,9 +17,6 @@ void fmu_articulated_show_state(fmu_model *self);
 laconic_status fmu_articulated_take_state(fmu_model *self, const laconic_articulated_input *input,
                                           laconic_refusal *why);
 
-/* Warns of an input that is not 0 and has no effect on this vehicle. */
-void fmu_articulated_check_idle(fmu_instance *instance);
-
 /* The load of each wheel and support on level ground in this posture. A vertical hinge carries weight and tipping
  * moments, so that bodies on hinges stand as one with their parents; a ball (hinge_is_ball) carries weight alone.
  * shift_m: by how much an acceleration shifts the carriage's own weight, axes of the world. */

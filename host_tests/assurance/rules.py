@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from assurance import sizes  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST_FILES = 1643
+MOST_FILES = 1650
 MOST_LINES_OF_CODE = 400
 GENERATED = (".fmu", ".o", ".so", ".a", ".pyc", ".profraw", ".log", "laconic_dbc.c", "laconic_dbc.h", "unity.c")
 RUN_DATE = re.compile(r"\b20[2-9]\d-[01]\d-[0-3]\d\b")

@@ -238,17 +238,22 @@ INLINE void tree_rolls(tree_contact *c, real penalty) {
     const bool limited = magnitude(motor) > l->drive_limit;
     const real along = (own * speed - c->push + s->axle - cut(motor, l->drive_limit)) / size;
     const real side = penalty * c->lateral_mass;
-    const real across = e[0] * c->impulse[1] - e[1] * c->impulse[0] + side * (e[0] * c->moved[1] - e[1] * c->moved[0]);
     law->speed = speed;
-    law->impulse[0] = e[0] * along - e[1] * across;
-    law->impulse[1] = e[1] * along + e[0] * across;
     law->along = (limited ? own : own + l->drive_slope) / (size * size);
     law->across = side;
-    law->axis[0] = law->other[1] = e[0];
     law->axis[1] = e[1];
-    law->other[0] = -e[1];
     law->turn[0] = e[0] / size;
     law->turn[1] = e[1] / size;
+    if (e[1] == R(0)) { /* no rollers, or those of an omni wheel */
+        law->impulse[0] = e[0] * along;
+        law->impulse[1] = c->impulse[1] + side * c->moved[1];
+        return;
+    }
+    const real across = e[0] * c->impulse[1] - e[1] * c->impulse[0] + side * (e[0] * c->moved[1] - e[1] * c->moved[0]);
+    law->impulse[0] = e[0] * along - e[1] * across;
+    law->impulse[1] = e[1] * along + e[0] * across;
+    law->axis[0] = law->other[1] = e[0];
+    law->other[0] = -e[1];
 }
 
 /* Below its limit a tyre that creeps has the slip creep · impulse, in both directions; the wheel turns as it may. */

@@ -43,7 +43,8 @@ static void tree_add_weight(tree_group *g, real force_N, real x, real y) {
     g->wanted = plus(g->wanted, vector_of(force_N, force_N * x, force_N * y));
 }
 
-/* Solves Σ row rowᵀ λ = wanted, row = (1, x, y), over the points on the ground; false where they do not determine it. */
+/* Solves Σ row rowᵀ λ = wanted, row = (1, x, y), over the points on the ground. Returns false where they do not
+ * determine it. */
 static bool tree_balance(vector *lambda, const tree_group *g) {
     equations e;
     e.xx = e.xy = e.xz = e.yy = e.yz = e.zz = R(0);

@@ -22,7 +22,8 @@ typedef struct tree_sight {
 } tree_sight;
 
 /* What both kinds of pass give for a contact, for the change of ν in the pass: impulse = impulse + S slip of a standing
- * wheel, S = along axis axisᵀ + across other otherᵀ, and speed = speed + turn·slip. Where axis[1] is 0, S is diagonal. */
+ * wheel, S = along axis axisᵀ + across other otherᵀ, and speed = speed + turn·slip. Where axis[1] is 0,
+ * S is diagonal. */
 typedef struct tree_law {
     real along, across, axis[2], other[2]; /* other is not read where across is 0 */
     real impulse[2], speed, turn[2];

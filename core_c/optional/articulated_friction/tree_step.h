@@ -27,8 +27,8 @@ typedef struct tree_loads {
     real statics_N[LACONIC_TREE_POINTS]; /* below 0 where lifted, else what is carried */
 } tree_loads;
 
-/* The elements of a hinge (NULL: none; stop: the high one, the low one follows), and a drive without limit, whose torque
- * is torque − slope ψ'. */
+/* The elements of a hinge (NULL: none; stop: the high one, the low one follows), and a drive without limit, whose
+ * torque is torque − slope ψ'. */
 typedef struct tree_hinge_part {
     const tree_element *drive, *dry, *stop;
     real torque_Nm, slope_Nms;

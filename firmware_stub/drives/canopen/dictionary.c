@@ -153,14 +153,16 @@ static uint32_t check_limits(const canopen_row *row, uint8_t sub, uint32_t value
 
 /* Values between the limits that are refused all the same. */
 static uint32_t checked_number(uint16_t at, uint32_t value) {
-    bool wrong = false;
+    bool is_wrong = false;
     switch (at) {
-    case AT(consumer): wrong = value >> 16 > 127; break;
-    case AT(quick_stop_option): wrong = value == 3 || value == 4; break; /* ramps at the limits of current, voltage */
-    case AT(mode): wrong = !canopen_has_mode((int8_t)value); break;
+    case AT(consumer): is_wrong = value >> 16 > 127; break;
+    case AT(quick_stop_option):
+        is_wrong = value == 3 || value == 4;
+        break; /* ramps at the limits of current, voltage */
+    case AT(mode): is_wrong = !canopen_has_mode((int8_t)value); break;
     default: break;
     }
-    return wrong ? CANOPEN_VALUE : 0;
+    return is_wrong ? CANOPEN_VALUE : 0;
 }
 
 static uint32_t write_axis(const canopen_node *on, const canopen_row *row, uint8_t sub, uint32_t value) {

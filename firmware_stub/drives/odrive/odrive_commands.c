@@ -126,9 +126,9 @@ static void absolute_position(laconic_drives *drives, int32_t i, const laconic_f
     (void)now_us;
     const laconic_wheel_drive *drive = drive_of(drives, i);
     const laconic_real turns = octets_real(frame->data);
-    const drive_place seen = {drive->encoder.count, 0};
+    const drive_place place = {drive->encoder.count, 0};
     if (is_finite(turns))
-        odrive_axis_of(drives, i)->zero = place_difference(seen, place_at(turns, drive->settings.encoder_counts));
+        odrive_axis_of(drives, i)->zero = place_difference(place, place_at(turns, drive->settings.encoder_counts));
 }
 
 static void position_gain(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {

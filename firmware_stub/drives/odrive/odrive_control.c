@@ -8,8 +8,8 @@ static const laconic_real torque_ramp = (laconic_real)0.01; /* torque_ramp_rate 
 static const laconic_real filter_bandwidth_per_s = 2;       /* input_filter_bandwidth          */
 
 drive_place odrive_place(const odrive_axis *axis, const laconic_wheel_drive *drive) {
-    const drive_place seen = {drive->encoder.count, 0};
-    return place_difference(seen, axis->zero);
+    const drive_place place = {drive->encoder.count, 0};
+    return place_difference(place, axis->zero);
 }
 
 static laconic_real counts_of(const laconic_wheel_drive *drive, laconic_real turns) {

@@ -13,8 +13,8 @@ uint32_t port_single_bits(uint64_t whole) {
     if (!is_wide) whole <<= 32;
     const uint32_t places = (uint32_t)__builtin_clz((uint32_t)(whole >> 32));
     whole <<= places;
-    const float scaled = (float)((uint32_t)(whole >> 32) | ((uint32_t)whole != 0 ? 1U : 0U));
-    memcpy(&bits, &scaled, sizeof bits);
+    const float mantissa = (float)((uint32_t)(whole >> 32) | ((uint32_t)whole != 0 ? 1U : 0U));
+    memcpy(&bits, &mantissa, sizeof bits);
     return bits + ((is_wide ? 32U : 0U) << 23) - (places << 23);
 }
 

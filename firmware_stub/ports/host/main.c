@@ -58,11 +58,11 @@ static void be_over(int number) { is_over = number; }
 /* SIGTERM and Ctrl-C are heard while the port waits, and nowhere else. `heard` is the mask for that. */
 static void hear_the_end(sigset_t *heard) {
     const struct sigaction action = {.sa_handler = be_over};
-    sigset_t ends;
-    sigemptyset(&ends);
-    sigaddset(&ends, SIGTERM);
-    sigaddset(&ends, SIGINT);
-    sigprocmask(SIG_BLOCK, &ends, heard);
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    sigprocmask(SIG_BLOCK, &signals, heard);
     sigaction(SIGTERM, &action, NULL);
     sigaction(SIGINT, &action, NULL);
 }
@@ -240,8 +240,8 @@ static void wait_for_work(const board *port, int listening, int parent, const si
         if (port->station[k].out_count > 0) watch(port->station[k].socket, &writable, &end);
     }
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    const int ready = pselect(end, &readable, &writable, NULL, &timeout, heard);
-    if (parent >= 0 && ready > 0 && FD_ISSET(parent, &readable)) look_at_parent(parent);
+    const int count = pselect(end, &readable, &writable, NULL, &timeout, heard);
+    if (parent >= 0 && count > 0 && FD_ISSET(parent, &readable)) look_at_parent(parent);
 }
 
 static void send_occupied(const board *port) {
@@ -315,7 +315,7 @@ static void serve(board *port, int listening, const options *settings) {
     }
 }
 
-static int open_listener(unsigned long number, unsigned long *chosen) {
+static int open_listener(unsigned long number, unsigned long *port) {
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)number)};
     socklen_t size = sizeof address;
     const int on = 1;
@@ -328,7 +328,7 @@ static int open_listener(unsigned long number, unsigned long *chosen) {
         close(listening);
         return -1;
     }
-    *chosen = ntohs(address.sin_port);
+    *port = ntohs(address.sin_port);
     return listening;
 }
 

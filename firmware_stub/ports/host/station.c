@@ -67,8 +67,8 @@ void station_reply(station *it) { put(it, it->slcan.reply, strlen(it->slcan.repl
 
 void station_flush(station *it) {
     if (it->socket < 0 || it->out_count == 0) return;
-    const ssize_t sent = send(it->socket, it->out, it->out_count, MSG_DONTWAIT);
-    if (sent <= 0) return;
-    it->out_count -= (size_t)sent;
-    memmove(it->out, it->out + sent, it->out_count);
+    const ssize_t count = send(it->socket, it->out, it->out_count, MSG_DONTWAIT);
+    if (count <= 0) return;
+    it->out_count -= (size_t)count;
+    memmove(it->out, it->out + count, it->out_count);
 }

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -70,7 +71,8 @@ def session(kind: str, reals: tuple[str, ...] = REALS) -> bool:
 
 def frames(clock: Clock, seed: int) -> bool:
     """The matrix of faults of frames, with a new seed each time; once at least."""
-    from laconic.tools.report.fault_matrix import run_matrix
+    sys.path.insert(0, str(ROOT / "host_tests/tests/support"))
+    from fault_matrix import run_matrix
 
     cases = injected = 0
     bad: list[str] = []

@@ -13,8 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from assurance.common import Clock
-from laconic.robot.identify.synthetic import ROBOTS, trials
+from assurance.common import ROOT, Clock
 
 # ---- Sweeps that are killed at random instants, each compared with one that nothing disturbs.
 
@@ -64,6 +63,9 @@ LEAST_HELD, MOST_HELD = 0.93, 0.97
 
 def run_identify(clock: Clock, seed: int) -> list[str]:
     """So many trials, fewer where the time is over before: then the limits are wider by three standard deviations."""
+    sys.path.insert(0, str(ROOT / "host_tests/tests/support"))
+    from synthetic import ROBOTS, trials
+
     held: dict[str, list[bool]] = {name: [] for name in ROBOTS}
     done = 0
     for trial in trials(TRIALS, seed):

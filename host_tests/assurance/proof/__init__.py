@@ -51,9 +51,10 @@ def parsed(harness: str) -> Path:
     """All sources of a harness, parsed once for all its entries."""
     own = [entry for entry in of_targets("laconic_objects_double", "laconic_node_double", "laconic_wire")
            if entry.name.startswith(SOURCES[harness]) or ("node.c" in harness and entry.target == "laconic_wire")]
-    flags = once(flag.replace("-isystem", "-I") for entry in own for flag in entry.flags("-I", "-isystem"))
+    flags = once(flag.replace("-isystem", "-I") for entry in own
+                 for flag in entry.flags("-I", "-isystem", "-DLACONIC_NODE_WITH"))
     if harness == "node.c":
-        flags.append("-DLACONIC_NODE_WITH_DRIVES=0")
+        flags += ["-ULACONIC_NODE_WITH_DRIVES", "-DLACONIC_NODE_WITH_DRIVES=0"]
     return parse([*(entry.source for entry in own if "batch" not in entry.source.parts), HERE / harness], flags,
                  work("proof") / f"{harness}.sav")
 

@@ -73,6 +73,14 @@ void prove_raw_input(void) {
     static uint8_t bytes[LACONIC_FRAME_BYTES];
     const int32_t wheels = Frama_C_interval(0, LACONIC_MAX_WHEELS);
     raw.take = ANY_BYTE();
+#if LACONIC_NODE_WITH_HINGES
+    static laconic_articulated_input hinged[2];
+    static laconic_real angle_rad[LACONIC_MAX_BODIES];
+    raw.take_hinges = (uint8_t)(ANY_BYTE() & LACONIC_RAW_HINGE_TAKES);
+    raw.hinge_count = Frama_C_interval(0, LACONIC_MAX_BODIES);
+    raw.hinged = hinged;
+    raw.angle_rad = angle_rad;
+#endif
     laconic_raw_restart(&raw);
     while (ANY_BOOL()) {
         ANYTHING(bytes);

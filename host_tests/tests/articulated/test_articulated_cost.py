@@ -46,7 +46,7 @@ def test_a_step_of_rk4_costs_at_most_so_many_plain_steps(capsys: pytest.CaptureF
 
 # ------------------------------------------------------------------------------- on ground with friction
 
-FRICTION_LIMITS = {"rigid": 1.5, "casters": 1.8, "loader": 1.8, "ackermann": 2.4, "swerve": 3.0}
+FRICTION_LIMITS = {"rigid": 1.2, "casters": 1.5, "loader": 1.4, "ackermann": 1.95, "swerve": 2.65}
 
 
 def friction_step_cost(vehicle: str) -> float:

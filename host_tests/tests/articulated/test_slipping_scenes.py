@@ -18,6 +18,7 @@ from hinge_scenes import CASTER, HINGED, WHEEL, held, tables_of, two_wheels
 
 from laconic import SlippingVehicle, Trajectory, build_scene, plot, simulate
 from laconic.cli.commands.verify import command
+from laconic.cli.main import run
 from laconic.errors import BadInput, Refused
 
 GROUND = {"friction_coefficient": 0.7}
@@ -156,6 +157,14 @@ def test_the_supply_limits_motors_of_wheels_and_of_steering() -> None:
     tables["outputs"] = {"signals": ["supply_voltage_V", "drive_limit", "hinge_current_A", "hinge_drive_limit"]}
     found = ran(tables).columns
     assert found["drive_limit[1]"].max() == 1.0 and found["supply_voltage_V"][1:].min() < 6.0
+
+
+def test_a_run_names_the_wheels_that_slipped(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["simulate", "swerve_module_off"]) == 0
+    told = capsys.readouterr().out
+    assert "J, wheels 1 and 2 slipped; contact_state and slip_along_m_per_s of [outputs] tell when" in told
+    assert run(["simulate", "skid_steer"]) == 0
+    assert "J; contact_state and slip_along_m_per_s of [outputs] tell where" in capsys.readouterr().out
 
 
 def test_a_picture_shows_slip_loads_and_energy(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from laconic_build.wheel.contents import FMUS, PLATFORMS
 from laconic_fmu.licences import COMPILER_TEXTS
 
 IN_EVERY_FMU = ("fmi-headers", *COMPILER_TEXTS)
-FOR_DEVELOPERS = ("bench", "cdef", "cortex_m", "tests")  # folders of core_c that a user's build does not take
+FOR_DEVELOPERS = ("bench", "cdef.h", "cortex_m", "tests")  # of core_c, what a user's build does not take
 NODE_FMU = "LaconicNode"
 
 

@@ -14,6 +14,8 @@ from laconic_fmu.licences import COMPILER_TEXTS, compiler_text, licence_of, zigl
 
 BUILT = "laconic/_built"
 PACKAGES = {"laconic": "python/laconic", "laconic_fmu": "python/laconic_fmu"}
+OF_THE_BUILD = tuple(f"laconic_fmu/{name}.py" for name in ("__main__", "cross", "licences", "names", "tables"))
+"""Modules of these that no command imports: a wheel has FMUs that are built."""
 READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
                     "fmu/articulated/modelDescription.xml",
                     "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc",
@@ -33,9 +35,10 @@ FMUS = (*(f"{name}_fmi{version}.fmu"
 
 def python_files(project: Path) -> dict[str, Path]:
     """Our packages, with the data beside their modules."""
-    return {f"{package}/{path.relative_to(project / folder).as_posix()}": path
-            for package, folder in PACKAGES.items() for path in (project / folder).rglob("*")
-            if path.is_file() and "__pycache__" not in path.parts and "_built" not in path.parts}
+    found = {f"{package}/{path.relative_to(project / folder).as_posix()}": path
+             for package, folder in PACKAGES.items() for path in (project / folder).rglob("*")
+             if path.is_file() and "__pycache__" not in path.parts and "_built" not in path.parts}
+    return {name: path for name, path in found.items() if name not in OF_THE_BUILD}
 
 
 def project_files(project: Path) -> dict[str, Path]:

@@ -11,7 +11,8 @@ from pathlib import Path
 from laconic_build.wheel.contents import REALS, Platform
 from laconic_fmu.cross import compile_to
 
-OPTIONAL = ("derivatives", "filter", "estimate", "batch")  # parts of the core that the libraries have
+OPTIONAL = ("articulated", "articulated_friction", "derivatives", "filter", "estimate", "batch")
+"""Parts of the core that the libraries have."""
 HOST_PORT = ("main.c", "station.c")
 HOST_PORT_OF_LINUX = (*HOST_PORT, "socketcan.c")
 

@@ -199,7 +199,7 @@ class Scene:
         """The checked vehicle of a scene with hinges on ideal ground."""
         if self.slips_on_hinges:
             raise BadInput(f"{self.path}: ground.friction_coefficient: this does not take hinges on ground with "
-                           "friction yet; use laconic simulate, laconic fmu or laconic rig, or take it out")
+                           "friction yet; use laconic simulate, fmu, rig or play, or take it out")
         return self._with_room(core, ArticulatedVehicle)
 
     def slipping_vehicle(self, core: Core) -> SlippingVehicle:

@@ -71,7 +71,7 @@ class Trajectory:
     folded: tuple[Folded, ...] = ()  # with hinges: trailers that turned by more than a right angle
     lifted: tuple[int, float] | None = None  # with hinges: the first wheel that carried nothing, and when in s
     least_margin: tuple[float, float, int] | None = None  # with hinges and friction known: N, when in s, which wheel
-    slipping_wheels: tuple[int, ...] = ()  # of the same: those that would slip in some row
+    slipping_wheels: tuple[int, ...] = ()  # with hinges: those that slipped, or would slip, in some row
     slip_loss_J: float | None = None  # with hinges where wheels may slip: what slip and scrub took
 
     def __repr__(self) -> str:
@@ -253,7 +253,8 @@ def simulate_with_hinges(scene: Scene, signals: Sequence[str], progress: bool, e
                      refused=found.refused, limited=tuple(found.commands.limited.values()), folded=rows.folded,
                      lifted=rows.lifted)
     if isinstance(rows, Rows):
-        run.least_margin, run.slipping_wheels = rows.least_margin, tuple(sorted(rows.slipping))
+        run.least_margin = rows.least_margin
+    run.slipping_wheels = tuple(sorted(rows.slipping))
     if isinstance(plant, SlippingPlant):
         run.slip_loss_J = slip_loss_of(plant)
     if isinstance(found, HingedRun) and found.parts and len(rows):

@@ -28,7 +28,7 @@ from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
 CHUNK = 2048  # steps whose inputs are made ready at once
-LIFTED = 2    # a contact_state
+SLIPS, LIFTED = 1, 2  # of a contact_state
 MIDDLE, END = 1, 2  # of the samples of a step: start, middle, end
 USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "hinge_angle_rad",
          "hinge_rate_rad_per_s", "hinge_reaction_Nm", "wheel_speed_rad_per_s", "wheel_angle_rad", "slip_along_m_per_s",
@@ -136,6 +136,7 @@ class SlippingRows(KeptRows):
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
         self._values = [_reader(signal, of_hinge, wheels, vehicle) for signal in kept]
         self._of_commands = any(signal.partition("[")[0] in (ANGLE, CURVATURE, TWIST) for signal in kept)
+        self.slipping: set[int] = set()  # numbers of the wheels that slipped in some row
         self._place = {name: kept.index(name) for name in ("origin_x_m", "origin_y_m") if name in kept}
 
     def take(self, plant: SlippingPlant, row: np.ndarray, tick: int) -> None:
@@ -143,6 +144,7 @@ class SlippingRows(KeptRows):
         found = plant.outputs()
         self._folds.take(found.motion.hinge_angle_rad, tick * self._inputs.step_s)
         self.see_lifted(found.contact_state == LIFTED, tick * self._inputs.step_s)
+        self.slipping |= set((np.flatnonzero(found.contact_state == SLIPS) + 1).tolist())
         given = self._inputs.held_at(tick) if self._of_commands else {}
         values = [read(found, row, given) for read in self._values]
         for name, at in self._place.items():

@@ -119,6 +119,35 @@ static void a_slope_pulls_every_body(void) {
     ASSERT_NEAR(EITHER(1e-14, 1e-5), 9.80665 * sin(0.1), r.twist_rate[1].x);
 }
 
+/* At a heading of 0.5 rad: the force turned back by it, with its moment about S. */
+static void a_force_fixed_in_the_world_is_the_force_that_the_body_sees(void) {
+    const laconic_articulated_model m = hinged_model(with_trailer(free_carriage()));
+    laconic_articulated_input world = nothing(), body = nothing();
+    laconic_articulated_start start = start_at(0.4, -0.3, 0.7);
+    start.heading_rad = REAL(0.5);
+    laconic_articulated_state s = hinged_state(&m, &start, &world);
+    const double ahead = 3 * cos(0.5) + 4 * sin(0.5), left = 4 * cos(0.5) - 3 * sin(0.5);
+    world.base.world_force_N[0] = 3;
+    world.base.world_force_N[1] = 4;
+    world.base.world_force_point_m[0] = REAL(0.5);
+    world.base.world_force_point_m[1] = REAL(0.1);
+    body.base.body_force_N[0] = REAL(ahead);
+    body.base.body_force_N[1] = REAL(left);
+    body.base.body_moment_Nm = REAL(0.5 * left - 0.1 * ahead);
+    laconic_articulated_reactions a, b;
+    laconic_articulated_rates p, q;
+    ASSERT_TAKEN(laconic_articulated_reactions_of(&a, &m, &s, &world, NULL, &refusal));
+    ASSERT_TAKEN(laconic_articulated_reactions_of(&b, &m, &s, &body, NULL, &refusal));
+    ASSERT_TAKEN(laconic_articulated_rates_of(&p, &m, &s, &world, &refusal));
+    ASSERT_TAKEN(laconic_articulated_rates_of(&q, &m, &s, &body, &refusal));
+    for (int i = 0; i < m.wheel_count; i++) ASSERT_NEAR(ROUNDING * 1e3, b.along_N[i], a.along_N[i]);
+    for (int k = 0; k < 2; k++) ASSERT_NEAR(ROUNDING * 1e3, b.hinge_force_N[0][k], a.hinge_force_N[0][k]);
+    ASSERT_NEAR(ROUNDING * 100, q.twist_rate[0].z, p.twist_rate[0].z);
+    ASSERT_NEAR(ROUNDING * 100, q.twist_rate[1].y, p.twist_rate[1].y);
+    ASSERT_NEAR(ROUNDING * 100, 0, a.balance);
+    TEST_ASSERT_TRUE(fabs((double)p.twist_rate[0].z) > 0.1);
+}
+
 static void wheel_angles_go_on_from_where_they_were_set(void) {
     const laconic_articulated_model m = hinged_model(with_two_casters());
     const laconic_articulated_input in = nothing();
@@ -142,6 +171,7 @@ int main(void) {
     RUN_TEST(lateral_forces_hold_a_tricycle_on_its_circle);
     RUN_TEST(a_brake_and_a_commanded_hinge_report_their_torques);
     RUN_TEST(a_slope_pulls_every_body);
+    RUN_TEST(a_force_fixed_in_the_world_is_the_force_that_the_body_sees);
     RUN_TEST(wheel_angles_go_on_from_where_they_were_set);
     return UNITY_END();
 }

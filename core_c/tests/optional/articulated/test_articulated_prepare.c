@@ -189,7 +189,7 @@ static void wheels_of_the_carriage_are_named_as_the_vehicle_counts_them(void) {
     w->axle_rad = REAL(0.3);
     w->x_m = REAL(0.5);
     hang_wheel(&v, 0, 0.4, 0.1, 0)->axle_rad = REAL(1.1);
-    ASSERT_STATUS(LACONIC_NOTHING_MOVES, prepared(&v));
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 5, prepared(&v), why);
 }
 
 static void friction_is_refused(void) {

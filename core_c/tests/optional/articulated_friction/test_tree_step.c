@@ -307,6 +307,9 @@ static void numbers_that_are_not_finite_are_refused_by_name(void) {
     in.hinged.base.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* to a speed that no state has */
     ASSERT_STATUS(LACONIC_OVERFLOW, laconic_tree_step(&m, REAL(0.001), &s, &in, &refusal));
     TEST_ASSERT_EQUAL_MEMORY(&before, &s, sizeof s);
+    in = tree_nothing();
+    in.hinged.hinge_voltage_V[0] = in.hinged.hinge_voltage_V[1] = REAL(LACONIC_REAL_MAX); /* finite, unlike their sum */
+    ASSERT_TAKEN(laconic_tree_step(&m, REAL(0.001), &s, &in, &refusal));
 }
 
 static void a_tree_that_has_turned_too_often_is_refused(void) {

@@ -263,6 +263,7 @@ def test_a_steering_motor_gives_its_drive_gear_and_constants() -> None:
     found = drive_settings(read_scene("tricycle_agv"), "canopen")
     assert found.driven == (True, False, False, True) and found.node_ids[0] == 1 and found.node_ids[3] == 2
     assert found.numbers["gear_ratio"] == (20.0, 0.0, 0.0, 100.0)
+    assert ("of", "1 front", "wheels by number, hinges by name") in [*found.rows()]
     assert found.numbers["torque_constant_Nm_per_A"] == (0.09, 0.0, 0.0, 0.07)
 
 

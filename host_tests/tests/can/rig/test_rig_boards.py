@@ -19,8 +19,8 @@ from laconic.errors import BadInput, Refused
 from laconic.scene import Scene, read_scene, rigid_scene_names
 from laconic.scene.ground import has_friction
 from laconic.scene.methods import EXACT, EXPLICIT
-from laconic.tools.report.node_sizes import cost_of
 from laconic.tools.trim import needs_of
+from node_sizes import cost_of
 
 pytestmark = pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 FULL = [name for name in BOARDS if "-" not in name]

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 import can
 import pytest
 
+from fault_matrix import FAULTS, Row, frames_for, run_case, run_matrix, summary
 from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.faulty import FaultyBus
@@ -18,7 +19,6 @@ from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.scaled import Voltages
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
-from laconic.tools.report.fault_matrix import FAULTS, Row, frames_for, run_case, run_matrix, summary
 
 FIXED_SEED = 20111125
 

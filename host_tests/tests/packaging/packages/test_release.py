@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import json
 import os
@@ -9,6 +10,7 @@ import shutil
 import subprocess
 import tarfile
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,10 +22,10 @@ from laconic_build.release import archives, bill
 from laconic_build.release.archives import File
 from laconic_build.release.collect import collect
 from laconic_build.release.parts import Places
-from laconic_build.release.products import products
+from laconic_build.release.products import FOR_DEVELOPERS, products
 from laconic_build.release.tree import NoRelease, Tree, check_tools, tree_of
 from laconic_build.wheel import cross
-from laconic_build.wheel.contents import FMUS, PLATFORMS
+from laconic_build.wheel.contents import FMUS, PLATFORMS, python_files
 from laconic_fmu.cross import TARGETS
 
 DATE = 1_700_000_000
@@ -266,3 +268,47 @@ def test_the_node_of_a_wheel_for_another_platform_has_every_room_of_the_node(mon
                if SOURCE_DIR / "firmware_stub" in path.parents}
     rooms = {folder.name for folder in (SOURCE_DIR / "firmware_stub").iterdir() if any(folder.rglob("*.c"))}
     assert len(compiled) == 6 and process == rooms - {"tests"}
+
+
+def test_the_core_of_a_wheel_for_another_platform_has_every_part_but_the_soft_addition(monkeypatch,
+                                                                                        tmp_path: Path) -> None:
+    compiled: list[set[Path]] = []
+    monkeypatch.setattr(cross, "compile_to", lambda target, sources, *rest, **more: compiled.append(set(sources)))
+    cross.compile_all(PLATFORMS["windows-x86_64"], SOURCE_DIR, tmp_path, tmp_path, "python")
+    parts = [SOURCE_DIR / "core_c" / "src", *(SOURCE_DIR / "core_c" / "optional").iterdir()]
+    every = {path for part in parts if part.name != "soft_double" for path in part.rglob("*.c")}
+    assert len(compiled) == 4 and all(every <= sources for sources in compiled)
+
+
+def test_what_the_core_for_users_leaves_out_is_there():
+    """A name that moved would come back into the archive unseen."""
+    kept = {path.name for path in (SOURCE_DIR / "core_c").iterdir()} - set(FOR_DEVELOPERS)
+    assert all((SOURCE_DIR / "core_c" / name).exists() for name in FOR_DEVELOPERS)
+    assert kept == {"CMakeLists.txt", "cmake", "include", "optional", "src"}
+
+
+STARTED_BY_NAME = {"laconic.__main__", "laconic.fmu.bus_demo"}
+
+
+def test_every_module_of_a_wheel_is_a_command_or_imported_by_another() -> None:
+    """Else it serves the build or the tests alone, and nobody who installs the wheel."""
+    files = {name.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
+             for name, path in python_files(SOURCE_DIR).items() if name.endswith(".py")}
+    imported = {name for module, path in files.items() for name in imports_of(module, path)}
+    unused = {name for name, path in files.items() if name not in imported and path.name != "__init__.py"
+              and not name.startswith("laconic.cli.commands.")}
+    assert unused == STARTED_BY_NAME
+    assert {name for name in imported if name.startswith("laconic_fmu.")} <= files.keys()
+
+
+def imports_of(module: str, path: Path) -> Iterator[str]:
+    """Modules, as far as they are ours; names that are no modules, too."""
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package.rsplit(".", node.level - 1)[0] if node.level else ""
+            source = ".".join(part for part in (above, node.module or "") if part)
+            yield from (source, *(f"{source}.{alias.name}" for alias in node.names if source in ("laconic", package)
+                                  or source.startswith("laconic.")))

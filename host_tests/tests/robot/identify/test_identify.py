@@ -16,13 +16,13 @@ from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.study import identify
-from laconic.robot.identify.synthetic import made_up, trials
 from laconic.robot.identify.words import in_words
 from laconic.robot.logs import gather_logs
 from laconic.robot.replay.measures import grand_mean
 from laconic.robot.replay.rolling import rolling_of, rotations_of
 from laconic.scene import read_scene
 from recorded_data import recorded
+from synthetic import made_up, trials
 
 RECORDED = recorded("optiodom")
 needs_records = pytest.mark.skipif(not RECORDED.exists(),

@@ -16,7 +16,6 @@ from laconic.robot.identify import steered_evidence
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.steered_evidence import made_up
 from laconic.robot.identify.study import identify
-from laconic.robot.identify.synthetic import steered_trials
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import Following
 from laconic.robot.replay.missed_wraps import fitting
@@ -25,6 +24,7 @@ from laconic.robot.replay.steered_rolling import SteeredRolling
 from laconic.robot.replay.steered_signals import OfLog, driven, followed
 from laconic.robot.replay.steered_slip import SteeredSlip
 from laconic.scene import read_scene
+from synthetic import steered_trials
 
 PERIOD_S, LINES = 0.05, 400
 TICKS, TRACTION_TICKS = 8192, 4096

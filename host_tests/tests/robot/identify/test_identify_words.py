@@ -14,9 +14,9 @@ from laconic.cli.main import run
 from laconic.robot.identify.fitted_toml import fitted_text
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.study import identify
-from laconic.robot.identify.synthetic import made_up
 from laconic.robot.identify.words import MOTIONS
 from laconic.scene import read_scene
+from synthetic import made_up
 
 STEADY = {"ahead": (0.3, 0.0, 0.0), "left": (0.3, 0.0, 0.4), "right": (0.3, 0.0, -0.4)}
 

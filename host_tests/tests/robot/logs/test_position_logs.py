@@ -14,12 +14,12 @@ from laconic.cli.main import run
 from laconic.robot.identify.geometry import geometry_of
 from laconic.robot.identify.rolling_evidence import RollingEvidence, run_of, with_headings
 from laconic.robot.identify.solve import fit
-from laconic.robot.identify.synthetic import made_up
 from laconic.robot.logs import gather_logs
 from laconic.robot.replay.placing import fitted
 from laconic.robot.replay.rolling import rolling_of
 from laconic.scene import read_scene
 from log_support import CAN_MAP, SCENE, TEXT_MAP, asc, asc_lines, csv, frames, mapped, motion, refused_log, replayed
+from synthetic import made_up
 
 POSITIONS = TEXT_MAP.replace('["x", "y", "yaw"]', '["x", "y"]')
 HEAD = ("t", "left", "right", "x", "y")

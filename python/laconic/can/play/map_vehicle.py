@@ -9,7 +9,6 @@ import can
 import numpy as np
 
 from laconic.can.play.faults import DriveFault
-from laconic.can.play.journey import Pose
 from laconic.can.play.loop import Lateness
 from laconic.can.play.map_file import REMOTE
 from laconic.can.play.map_join import Joined, Key
@@ -18,6 +17,7 @@ from laconic.can.play.map_plant import MapPlant
 from laconic.can.play.map_signals import reader_of
 from laconic.can.play.protocols import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
 from laconic.can.play.settings import DriveSettings
+from laconic.can.play.stopping import Pose
 from laconic.can.rig.faults import error_frame
 from laconic.errors import LaconicError, Refused, ResultFails
 from laconic.scene import Scene

@@ -15,12 +15,12 @@ from typing import Any
 import can
 
 from laconic.can.play.faults import DriveFault
-from laconic.can.play.journey import Pose
 from laconic.can.play.loop import Lateness
 from laconic.can.play.orders import Orders
 from laconic.can.play.protocols import ERROR_FRAMES, ORDERS
 from laconic.can.play.senders import Senders
 from laconic.can.play.settings import DriveSettings, drive_parameters
+from laconic.can.play.stopping import Pose
 from laconic.can.play.vehicle import played, without_sensors
 from laconic.can.rig.client import RUNNING, NodeClient, come_to_rest, stop_running
 from laconic.can.rig.errors import BusDied, NodeRefused, NodeSilent

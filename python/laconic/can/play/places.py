@@ -13,7 +13,6 @@ import can
 
 from laconic.can.play.can_fail import CanFail, drives_can_fail, map_can_fail
 from laconic.can.play.faults import DriveFault
-from laconic.can.play.journey import Travelling
 from laconic.can.play.listener import ListeningBus, listening_socket
 from laconic.can.play.loop import Lateness, Vehicle
 from laconic.can.play.map_file import read_map
@@ -24,6 +23,7 @@ from laconic.can.play.node_vehicle import Bridged, NodeVehicle, OnBus, running
 from laconic.can.play.options import PlayOptions, controller_bus
 from laconic.can.play.protocols import OF_MAP
 from laconic.can.play.settings import DriveSettings, drive_settings
+from laconic.can.play.stopping import Travelling
 from laconic.can.play.vehicle import played, silent_sensors
 from laconic.can.rig.bagged import check_rigid
 from laconic.can.rig.boards import own_node

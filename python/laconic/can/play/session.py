@@ -11,13 +11,12 @@ from contextlib import contextmanager
 import can
 
 from laconic.can.play.faults import Saboteur, faulty_bus, read_bus_faults, read_faults
-from laconic.can.play.journey import Journey
 from laconic.can.play.live import live_traffic
 from laconic.can.play.loop import Loop, Seconds, Traffic
 from laconic.can.play.options import PlayOptions, check_options
 from laconic.can.play.places import Place, Played, place_of
 from laconic.can.play.settings import DriveSettings, as_values
-from laconic.can.play.stopping import Witness
+from laconic.can.play.stopping import Journey, Witness
 from laconic.can.play.vehicle import check_playable, coasts_for_ever
 from laconic.can.rig.bagged import played_views
 from laconic.can.rig.errors import BusDied, Interrupted, Interruption

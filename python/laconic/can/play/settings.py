@@ -44,6 +44,7 @@ class DriveSettings:
     watchdog_s: float | None           # None: the protocol's own
     numbers: dict[str, tuple[float, ...]]
     origins: dict[str, str] = field(default_factory=dict)  # where each number comes from, for people
+    hinges: tuple[str, ...] = ()       # names of the axes behind the wheels
 
     def of_wheel(self, wheel: int) -> dict[str, float]:
         """The numbers of one wheel's drive, counted from 0."""
@@ -53,6 +54,11 @@ class DriveSettings:
         """Key, value or values, and origin, for a table."""
         ids = [str(each) for each, has_drive in zip(self.node_ids, self.driven, strict=True) if has_drive]
         yield "node_ids", " ".join(ids), self.origins["node_ids"]
+        if self.hinges:
+            wheels = len(self.driven) - len(self.hinges)
+            names = [*map(str, range(1, wheels + 1)), *self.hinges]
+            yield "of", " ".join(name for name, has_drive in zip(names, self.driven, strict=True) if has_drive), \
+                "wheels by number, hinges by name"
         for key, values in self.numbers.items():
             used = [f"{value:.6g}" for value, has_drive in zip(values, self.driven, strict=True) if has_drive]
             yield key, used[0] if len(set(used)) == 1 else " ".join(used), self.origins[key]
@@ -80,7 +86,8 @@ def drive_settings(scene: Scene, protocol: str | None, id_base: str | None = Non
         values, origins[key] = origin_of(scene, given, chosen, key, numbers)
         numbers[key] = tuple(value if has_drive else 0.0 for value, has_drive in
                              zip(values, given.driven, strict=True))
-    return DriveSettings(chosen, given.driven, ids, given.watchdog_s, numbers, origins)
+    return DriveSettings(chosen, given.driven, ids, given.watchdog_s, numbers, origins,
+                         tuple(hinge.name for hinge in scene.hinges))
 
 
 def protocol_of(scene: Scene, given: Drives, protocol: str | None) -> str:

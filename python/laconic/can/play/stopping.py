@@ -1,4 +1,4 @@
-"""Did the vehicle stop in time? Its motion is watched from its own truth, not from what the drives say."""
+"""Where a played vehicle went, and whether it stopped in time: by its own truth, not by what the drives say."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ LOOK_US = 10_000
 COASTS = ("a drive that is off lets its wheel coast, which only friction ends, and this scene has none: give "
           "[vehicle.motor] viscous_friction_Nms, or [ground] friction_coefficient and axle_friction_Nm")
 STANDS_M_PER_S, STANDS_RAD_PER_S = 0.01, 0.02
+
+Pose = tuple[float, float, float]  # x [m], y [m] of the centre of mass, heading [rad]
 
 
 class Moving(Protocol):
@@ -99,3 +101,39 @@ class Witness:
         passed = (limits.within_s is None or took_s <= limits.within_s) and (
             limits.distance_m is None or way_m <= limits.distance_m)
         return Verdict("stopped", passed, detail, took_s, limits.within_s or 0.0)
+
+
+# ---- the way
+
+class Travelling(Protocol):
+    """A vehicle that knows where it is."""
+
+    tells_motion: bool  # whether speed() is known while it plays
+
+    def speed(self) -> tuple[float, float]:
+        """Of the centre of mass [m/s], and yaw rate [rad/s], both without sign."""
+
+    def pose(self) -> Pose | None:
+        """At the end; None where it is not known."""
+
+
+class Journey:
+    """Adds up the way of the centre of mass; called in the loop."""
+
+    def __init__(self, vehicle: Travelling):
+        self.vehicle, self.way_m = vehicle, 0.0
+        self._last_us: int | None = None
+
+    def __call__(self, now_us: int) -> int:
+        if self._last_us is None:
+            self._last_us = now_us
+        elif now_us >= self._last_us + LOOK_US:
+            self.way_m += self.vehicle.speed()[0] * (now_us - self._last_us) / 1e6
+            self._last_us = now_us
+        return self._last_us + LOOK_US
+
+    def figures(self) -> dict[str, float]:
+        """For the table: what is known of it."""
+        pose = self.vehicle.pose()
+        found = dict(zip(("end_x_m", "end_y_m", "end_heading_rad"), pose, strict=True)) if pose is not None else {}
+        return found | ({"way_m": self.way_m} if self.vehicle.tells_motion else {})

@@ -24,8 +24,8 @@ LEFT_OUT = ("session", "run")
               help="Write the map with what was found of it: steering, lags, place of the tracker. Needs --map.")
 @click.option("--free", metavar="NAMES",
               help="Parameters that may change [default: radius,distance, also with casters or trailers; with "
-              "steered wheels radius,wheelbase,steering-gain,steering-offset]. Geometry: radius (of each wheel), "
-              "distance (of all wheels, one factor), "
+              "steered wheels radius,wheelbase,steering-gain,steering-offset, and distance for wheelbase where "
+              "all steer]. Geometry: radius (of each wheel), distance (of all wheels, one factor), "
               "centre-of-mass, place and heading (of the robot against the recorded pose), clock-lag (of the pose), "
               "axle, roller (angles of each wheel), common-radius (one of all wheels). Steered: wheelbase, track, "
               "trail, steering-gain, steering-offset, steering-curve, steering-lag, steering-rate, speed-gain, "
@@ -64,7 +64,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
     from laconic.robot.identify.geometry import geometry_of
     from laconic.robot.identify.picture import draw
     from laconic.robot.identify.study import identify, parts
-    from laconic.robot.identify.words_of_errors import failures
+    from laconic.robot.identify.words import failures
     from laconic.robot.logs import gather_logs
     from laconic.robot.logs.column_map import named_map
     from laconic.robot.replay.missed_wraps import rolled_alone

@@ -253,8 +253,9 @@ def words_of_slip(run: Trajectory) -> list[str]:
     loss_J, step_s, vehicle = slip_loss_J, run.scene.run.step_s, run.scene.vehicle
     rounding_J = ROLLED * vehicle["mass_kg"] * vehicle["wheel_radius_m"]
     what = "slip and scrub" if run.scene.has_hinges else "slip and dragging rollers"
-    told = [f"{what} took {loss_J:.3g} J; contact_state and slip_along_m_per_s of [outputs] tell "
-            "where" if loss_J > rounding_J else "no wheel slipped"]
+    named = f", {wheels_text(run.slipping_wheels)} slipped" if run.slipping_wheels else ""
+    told = [f"{what} took {loss_J:.3g} J{named}; contact_state and slip_along_m_per_s of [outputs] tell "
+            f"{'when' if named else 'where'}" if loss_J > rounding_J else "no wheel slipped"]
     if step_s > FRICTION_STEP_S:
         told.append("ground with friction is stepped to first order, and losses are the first to be off: compare "
                     f"path and losses with --step {FRICTION_STEP_S:g}")

@@ -14,8 +14,7 @@ from laconic.robot.identify.parameter import Parameters
 from laconic.robot.identify.solve import Fit, fit, values_by_name
 from laconic.robot.identify.steered import SLIPPING, with_measuring
 from laconic.robot.identify.steered_evidence import SteeredEvidence
-from laconic.robot.identify.words import in_words, with_errors
-from laconic.robot.identify.words_of_errors import of_errors
+from laconic.robot.identify.words import in_words, of_errors, with_errors
 from laconic.robot.logs import Log
 from laconic.robot.logs.log import remarks_of, run_names
 from laconic.robot.replay.measures import RunErrors
