@@ -82,8 +82,11 @@ static void a_drive_turns_a_wheel_of_a_vehicle_with_hinges(void) {
     start_drives(&prescribed);
     node.drives.drive[0].target.mode = LACONIC_DRIVE_CURRENT;
     node.drives.drive[0].target.current_A = -5;
+    node.drives.drive[1].target.mode = LACONIC_DRIVE_SPEED; /* on a curve each wheel rolls another way */
+    node.drives.drive[1].target.speed_rad_per_s = 4;
     bench_pass_ms(500);
     const laconic_articulated_motion now = motion();
+    TEST_ASSERT_TRUE(now.wheel_angle_rad[0] - now.wheel_angle_rad[2] > (laconic_real)0.002);
     TEST_ASSERT_TRUE(now.velocity_m_per_s[0] > (laconic_real)0.05);
     const laconic_real counts = now.wheel_angle_rad[2] * -10 * 1000 / (laconic_real)6.283185307;
     const laconic_real off = (laconic_real)node.drives.drive[0].encoder.count - counts;

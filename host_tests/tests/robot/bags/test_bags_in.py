@@ -27,6 +27,7 @@ from bag_support import (
 )
 from laconic.cli.main import run
 from laconic.robot.bags.messages import decoder_of
+from laconic.robot.bags.samples import heading_of
 from laconic.robot.logs import gather_logs
 from laconic.robot.logs.fields import Field
 
@@ -35,6 +36,15 @@ format = "bag"
 joints = "/joint_states"
 wheels = ["left_wheel", "right_wheel"]
 """
+
+
+def test_the_heading_of_a_tilted_robot_is_where_its_x_axis_points() -> None:
+    for roll, pitch, yaw in ((0.0, 0.0, 2.0), (0.2, -0.3, 0.7), (-0.4, 0.25, -2.8)):
+        half = [(math.cos(angle / 2), math.sin(angle / 2)) for angle in (roll, pitch, yaw)]
+        (cr, sr), (cp, sp), (cy, sy) = half
+        x, y, z, w = (sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy,
+                      cr * cp * cy + sr * sp * sy)
+        assert heading_of({"x": x, "y": y, "z": z, "w": w}) == pytest.approx(yaw, abs=1e-12)
 
 
 def replayed(capsys, *arguments) -> dict:

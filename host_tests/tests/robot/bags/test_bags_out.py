@@ -89,6 +89,24 @@ def test_other_readers_find_the_names_types_and_numbers_of_the_run(name, tmp_pat
     assert truth[99].twist.twist.linear.x == speed[99]
 
 
+def test_the_velocity_of_the_truth_is_that_of_its_own_position(tmp_path):
+    """Both are of the frame base_link, however far the mass is from it."""
+    bag = recorded(tmp_path, "run.mcap", driven(tmp_path, "[vehicle]\n", "[vehicle]\ncom_x_m = 0.2\ncom_y_m = 0.1\n"))
+    with AnyReader([bag]) as reader:
+        chosen = [one for one in reader.connections if one.topic == "/ground_truth/odom"]
+        truth = [reader.deserialize(data, each.msgtype) for each, _, data in reader.messages(chosen)]
+    time_s = np.array([each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in truth])
+    place = np.array([[each.pose.pose.position.x, each.pose.pose.position.y] for each in truth])
+    heading = np.array([2 * np.arctan2(each.pose.pose.orientation.z, each.pose.pose.orientation.w) for each in truth])
+    speed = np.gradient(place, time_s, axis=0)
+    ahead = np.cos(heading) * speed[:, 0] + np.sin(heading) * speed[:, 1]
+    left = np.cos(heading) * speed[:, 1] - np.sin(heading) * speed[:, 0]
+    steady = slice(100, 145)  # a step of the voltages is at 1.5 s
+    assert ahead[steady] == pytest.approx([each.twist.twist.linear.x for each in truth[steady]], abs=1e-4)
+    assert left[steady] == pytest.approx([each.twist.twist.linear.y for each in truth[steady]], abs=1e-4)
+    assert max(abs(each.twist.twist.angular.z) for each in truth[steady]) > 0.1
+
+
 def test_the_reader_of_mcap_for_ros_2_reads_it(tmp_path):
     bag = recorded(tmp_path, "run.mcap")
     with bag.open("rb") as file:
