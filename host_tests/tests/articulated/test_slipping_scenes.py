@@ -190,10 +190,10 @@ def test_forces_along_and_lateral_against_the_slips_take_the_energy_that_slip_lo
 def test_a_run_names_the_wheels_that_slipped(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["simulate", "swerve_module_off"]) == 0
     told = capsys.readouterr().out
-    both = r"contact_state, slip_along_m_per_s and slip_across_m_per_s of \[outputs\] tell when"
-    assert re.search(rf"J, wheels 1 and 2 slipped \([\d.]+ J, [\d.]+ J\); {both}", told)
+    both = r"\(when: contact_state, slip_along_m_per_s, slip_across_m_per_s in \[outputs\]\)"
+    assert re.search(rf"J, wheels 1 and 2 slipped \([\d.]+ J, [\d.]+ J\) {both}", told)
     assert run(["simulate", "skid_steer"]) == 0
-    assert re.search(rf"J, wheels 1, 2, 3 and 4 slipped \((?:[\d.]+ J, ){{3}}[\d.]+ J\); {both}",
+    assert re.search(rf"J, wheels 1, 2, 3 and 4 slipped \((?:[\d.]+ J, ){{3}}[\d.]+ J\) {both}",
                      capsys.readouterr().out)
 
 
