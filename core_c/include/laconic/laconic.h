@@ -590,8 +590,8 @@ typedef struct laconic_grip {
 } laconic_grip;
 
 /* Enters one instant. Slip is judged only where the contact has a friction coefficient. A margin or normal load below 0
- * by less than the rank tolerance times the weight is rounding and counts as neither slip nor lift. Where the ground
- * has friction, a recorder also enters which wheels slipped in the step before and what that took. */
+ * by less than the rank tolerance times the weight is rounding and counts as neither slip nor lift. On ground
+ * with friction a recorder notes the wheels that slipped in the step before, and the energy that this took. */
 void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, const laconic_model *model,
                         const laconic_reactions *reactions, uint64_t steps);
 
