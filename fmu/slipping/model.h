@@ -84,7 +84,7 @@ typedef struct fmu_tangent {
     SHOWN(origin_x_m, origin_m[0]) SHOWN(origin_y_m, origin_m[1]) \
     SHOWN(velocity_body_m_per_s, out.motion.velocity_m_per_s) MOVES(yaw_rate_rad_per_s) MOVES(hinge_rate_rad_per_s) \
     MOVES(body_x_m) MOVES(body_y_m) MOVES(body_heading_rad) MOVES(wheel_speed_rad_per_s) MOVES(energy_J) \
-    SAME(wheel_torque_Nm) SHOWN(wheel_reaction_N, out.along_N) SHOWN(wheel_lateral_N, out.across_N) \
+    SAME(wheel_torque_Nm) SHOWN(wheel_reaction_N, out.along_N) SHOWN(wheel_lateral_N, out.lateral_N) \
     SHOWN(hinge_reaction_Nm, out.hinge_torque_Nm) SHOWN(wheel_load_N, out.normal_N) \
     SHOWN(support_load_N, support_load_N) \
     SAME(slip_along_m_per_s) SAME(slip_across_m_per_s) SHOWN(contact_state, contact_state) \

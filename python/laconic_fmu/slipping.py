@@ -30,7 +30,8 @@ TEXTS = {
     "wheel_torque_Nm": "Torque of the motor on each axle in the last internal step",
     "wheel_reaction_N": "Force of the ground on each wheel along its roller axis in the last internal step; fixed "
                         "wheels: along the rolling direction",
-    "wheel_lateral_N": "Force of the ground on each wheel across its roller axis in the last internal step",
+    "wheel_lateral_N": "Force of the ground on each wheel 90 degrees to the right of its roller axis in the last "
+                       "internal step",
     "hinge_reaction_Nm": "Torque of servo, motor or prescribed rate on the body of each hinge in the last internal "
                          "step",
     "wheel_load_N": "Normal load of each wheel, by statics with the ground's forces of the internal step before; below "

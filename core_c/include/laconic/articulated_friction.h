@@ -263,9 +263,11 @@ typedef struct laconic_tree_outputs {
     laconic_real slip_along_m_per_s[LACONIC_MAX_WHEELS],
         slip_across_m_per_s[LACONIC_MAX_WHEELS]; /* along u, along w  */
     int32_t contact_state[LACONIC_MAX_WHEELS];   /* 0 sticks or rolls, 1 slips, 2 has lifted                  */
-    laconic_real along_N[LACONIC_MAX_WHEELS], across_N[LACONIC_MAX_WHEELS]; /* of the ground on the wheel      */
-    laconic_real scrub_Nm[LACONIC_MAX_WHEELS];           /* the same, about the vertical                              */
-    laconic_real normal_N[LACONIC_TREE_POINTS];          /* wheels, then supports                                     */
+    laconic_real along_N[LACONIC_MAX_WHEELS],
+        lateral_N[LACONIC_MAX_WHEELS];          /* of the ground on the wheel: along u, against w (to the right), as in
+                                          laconic_reactions. Slip takes −along slip_along + lateral slip_across */
+    laconic_real scrub_Nm[LACONIC_MAX_WHEELS];  /* the same, about the vertical                              */
+    laconic_real normal_N[LACONIC_TREE_POINTS]; /* wheels, then supports                                     */
     laconic_real wheel_torque_Nm[LACONIC_MAX_WHEELS];    /* of the motor on the axle                             */
     laconic_real hinge_torque_Nm[LACONIC_MAX_BODIES];    /* of servo, motor or prescribed rate on the body       */
     laconic_real friction_torque_Nm[LACONIC_MAX_BODIES]; /* dry friction of the hinge                         */

@@ -23,15 +23,15 @@ typedef struct stage_sums {
 } stage_sums;
 
 int32_t laconic_articulated_follower(const articulated_sweep *s, const laconic_articulated_model *m, real square_rate) {
-    int32_t body = 0;
+    int32_t fastest = 0;
     if (!(square_rate > R(0))) return 0;
     for (int32_t b = m->body_count; b > 0; b--) {
         const laconic_link *link = &m->link[b - 1];
         if (link->motion == LACONIC_MOTION_FOLLOWING &&
             square_following_rate(link, s->twist[b]) >= R(0.999) * square_rate)
-            body = b;
+            fastest = b;
     }
-    return body;
+    return fastest;
 }
 
 /* Casters and yaw rates that are too fast for a stable step. */

@@ -148,7 +148,7 @@ static void tree_fill_wheels(laconic_tree_outputs *out, const tree_model *m, con
         out->slip_across_m_per_s[i] = slip[1];
         out->contact_state[i] = tree_contact_state(w, s, i, slip);
         out->along_N[i] = -s->grip_N[i][0];
-        out->across_N[i] = -w->drag * s->grip_N[i][1];
+        out->lateral_N[i] = w->drag * s->grip_N[i][1]; /* to the right; the slip counts to the left */
         out->scrub_Nm[i] = -s->scrub_Nm[i];
         out->wheel_torque_Nm[i] = s->motor_torque_Nm[i];
     }

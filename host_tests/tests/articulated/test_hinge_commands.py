@@ -369,14 +369,21 @@ step_s = 0.01
 
 
 def test_commands_that_the_fmu_of_hinges_does_not_take_are_named_with_those_that_it_takes() -> None:
-    assert "the FMU has no inputs steering_curvature_per_m, which the scene steers by; give steering_twist" in left_out(
+    assert "in place of steering_curvature_per_m give steering_twist" in left_out(
         laconic.build_scene(tables_of("f1tenth", input=held(steering_curvature_per_m=0.2))))
     tables = two_wheels()
     tables["vehicle"]["wheel"].append({"kind": "fixed", "x_m": 0.5, "y_m": 0.0, "steered": "prescribed",
                                        "name": "front", "driven": False, "rate_limit_rad_per_s": 1.0})
     told_of = left_out(laconic.build_scene(tables | {"input": held(steering_angle_rad__front=0.2)}))
-    assert "the FMU has no limits" in told_of and "no inputs steering_angle_rad[front]" in told_of
+    assert "the FMU does not limit angle and rate of front; do so in your controller" in told_of
+    assert "in place of steering_angle_rad[front] give" in told_of
     assert "give steering_rate_rad_per_s of prescribed hinges" in told_of
+
+
+def test_the_line_about_an_fmu_of_a_car_is_short_and_names_only_inputs_that_it_has() -> None:
+    line = left_out(laconic.read_scene("f1tenth"))
+    assert "in place of steering_angle_rad give steering_twist and steering_twist_rate" in line
+    assert "prescribed" not in line and len(line.partition(": ")[2]) <= 200
 
 
 def test_a_run_that_is_refused_on_the_way_keeps_what_was_before(tmp_path: Path) -> None:

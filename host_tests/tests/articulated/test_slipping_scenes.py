@@ -159,12 +159,39 @@ def test_the_supply_limits_motors_of_wheels_and_of_steering() -> None:
     assert found["drive_limit[1]"].max() == 1.0 and found["supply_voltage_V"][1:].min() < 6.0
 
 
+def test_the_ground_pushes_to_the_left_in_a_left_turn_with_friction_as_on_ideal_ground() -> None:
+    turns = held(**{"voltage_V[1]": 2.0, "voltage_V[2]": 2.0})
+    tables = tricycle({"steered": "prescribed", "start_angle_rad": 0.2}, input=turns,
+                      run={"duration_s": 2.0, "step_s": 0.002}, outputs={"signals": ["wheel_lateral_N"]})
+    for key in SERVO:
+        tables["vehicle"]["wheel"][2].pop(key)
+    tables.pop("initial", None)
+    ideal = {key: value for key, value in tables.items() if key != "ground"}
+    grips, holds = ran(tables | {"ground": {"friction_coefficient": 3.0}}), ran(ideal)
+    sums = [sum(last(each, f"wheel_lateral_N[{i}]") for i in (1, 2, 3)) for each in (grips, holds)]
+    assert sums[1] < -0.1
+    assert sums[0] == pytest.approx(sums[1], rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["swerve_module_off", "f1tenth"])
+def test_forces_along_and_lateral_against_the_slips_take_the_energy_that_slip_loses(name: str) -> None:
+    tables = shortened(tables_of(name), 1.0) if "ground" in tables_of(name) else slipping(name, 1.0)
+    tables["ground"]["friction_coefficient"] = 0.2
+    tables["outputs"] = {"signals": ["wheel_reaction_N", "wheel_lateral_N", "slip_along_m_per_s",
+                                     "slip_across_m_per_s", "slip_loss_J"]}
+    found = ran(tables)
+    along, right, slip, slip_left = (found.columns_of(each) for each in tables["outputs"]["signals"][:4])
+    taken_J = found.scene.run.step_s * np.sum(right * slip_left - along * slip)
+    assert last(found, "slip_loss_J") > 0.01
+    assert taken_J == pytest.approx(last(found, "slip_loss_J"), rel=1e-3)
+
+
 def test_a_run_names_the_wheels_that_slipped(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["simulate", "swerve_module_off"]) == 0
     told = capsys.readouterr().out
-    assert "J, wheels 1 and 2 slipped; contact_state and slip_along_m_per_s of [outputs] tell when" in told
+    assert "J, wheels 1 and 2 slipped (when: contact_state, slip_along_m_per_s in [outputs])" in told
     assert run(["simulate", "skid_steer"]) == 0
-    assert "J; contact_state and slip_along_m_per_s of [outputs] tell where" in capsys.readouterr().out
+    assert "J (which wheels: contact_state, slip_along_m_per_s in [outputs])" in capsys.readouterr().out
 
 
 def test_a_picture_shows_slip_loads_and_energy(tmp_path: Path) -> None:

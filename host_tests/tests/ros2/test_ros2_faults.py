@@ -29,12 +29,18 @@ from laconic.ros2.maps import Map
 from laconic.ros2.messages import message_class, new, plain_class, type_hash
 from laconic.ros2.names import LATCHED, USUAL, polled
 from laconic.ros2.wire import Participant
-from laconic.scene import read_scene
+from laconic.scene import Scene, read_scene
 from ros2_support import DOMAIN, announced, last, rig_of
 
 TWIST = "geometry_msgs/msg/Twist"
 ODOMETRY, TF = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 QUIET_DOMAIN = 73  # where no other writers come and go
+
+
+def steady() -> Scene:
+    """The burger with its centre of mass behind the axle: its ball carries load, so that a stop does not lift it."""
+    burger = read_scene("turtlebot3_burger")
+    return replace(burger, vehicle={**burger.vehicle, "com_x_m": -0.02})
 
 
 def yaw_of(rotation: Any) -> float:
@@ -50,7 +56,7 @@ def test_broken_packets_are_one_kind_of_line_whatever_their_bytes() -> None:
 
 
 def test_silence_stops_the_robot() -> None:
-    with rig_of() as rig:
+    with rig_of(steady()) as rig:
         rig.drive(50, 0.2)
         rig.turn(24)                        # as long as the watchdog waits
         assert rig.session.base.look()[0].velocity[0] == pytest.approx(0.2, abs=1e-3)
@@ -59,8 +65,17 @@ def test_silence_stops_the_robot() -> None:
         assert rig.lines == ["/laconic: cmd_vel was silent for 0.5 s, so the robot stops"]
 
 
-def test_a_stop_command_and_silence_after_it_are_no_event() -> None:
+def test_a_stop_lifts_the_ball_that_carries_nothing_and_the_line_says_so() -> None:
     with rig_of() as rig:
+        rig.drive(50, 0.2)
+        rig.drive(60, 0.0)
+        assert len(rig.lines) == 1
+        assert re.fullmatch(r"/laconic: support 1 lifts at 1\.\d+ s \(normal load -0\.\d+ N; [\d.]+ % of the run\); "
+                            "command less, or give base.acceleration_limit_m_per_s2", rig.lines[0])
+
+
+def test_a_stop_command_and_silence_after_it_are_no_event() -> None:
+    with rig_of(steady()) as rig:
         rig.drive(50, 0.2)
         rig.drive(1, 0.0)
         rig.turn(60)
@@ -69,7 +84,7 @@ def test_a_stop_command_and_silence_after_it_are_no_event() -> None:
 
 @pytest.mark.parametrize("number", [float("nan"), float("-inf"), 1e300])
 def test_a_command_that_is_not_finite_is_ignored_and_told(number: float) -> None:
-    with rig_of() as rig:
+    with rig_of(steady()) as rig:
         rig.drive(20, 0.1)
         rig.drive(60, number)
         assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3  # the watchdog heard nothing new

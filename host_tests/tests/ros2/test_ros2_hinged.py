@@ -68,6 +68,17 @@ def test_a_vehicle_with_hinges_reaches_the_commanded_velocity(name: str) -> None
     assert base.look()[0].velocity == pytest.approx(COMMANDS[name], abs=2e-3)
 
 
+@pytest.mark.parametrize("speed_m_per_s", [0.5, 3.0])
+def test_the_built_in_car_starts_and_stops_within_the_grip_of_its_wheels(speed_m_per_s: float) -> None:
+    base = hinged_base("f1tenth")
+    for command in ((speed_m_per_s, 0.0, 0.0), (0.0, 0.0, 0.0)):
+        driven(base, 2.5, *command)
+        assert base.motion.grip(0) == ""
+    without = hinged_base(replace(read_scene("f1tenth"), base=None))
+    driven(without, 0.1, speed_m_per_s, 0.0, 0.0)
+    assert "wheels would slip: the ground had to hold" in without.motion.grip(0)
+
+
 @pytest.mark.parametrize("name", HINGED)
 def test_odometry_of_wheels_and_steering_is_the_motion(name: str) -> None:
     base = hinged_base(name)
@@ -227,11 +238,9 @@ def test_a_car_follows_ackermann_commands_and_its_watchdog_stops_it() -> None:
     with rig_of("f1tenth") as rig:
         drive_by_angle(rig, 100, speed=1.0, steering_angle=0.2)
         assert rig.session.base.look()[0].velocity == pytest.approx((1.0, 0.0, math.tan(0.2) / 0.3302), abs=2e-3)
-        rig.turn(80)
+        rig.turn(110)
         assert abs(rig.session.base.look()[0].velocity[0]) < 1e-3
-        assert rig.lines == ["/laconic: wheels would slip: the ground had to hold 13.3 N more than friction allows; "
-                             "command less, or give base.acceleration_limit_m_per_s2",
-                             "/laconic: ackermann_cmd was silent for 0.5 s, so the robot stops"]
+        assert rig.lines == ["/laconic: ackermann_cmd was silent for 0.5 s, so the robot stops"]
 
 
 def test_a_car_steers_while_it_stands() -> None:

@@ -5,20 +5,26 @@
 
 from __future__ import annotations
 
-import sys
+import runpy
 from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from cantools.database.can import Database, Message, Signal
 
-sys.path.append(str(Path(__file__).resolve().parents[3] / "firmware_stub"))  # which is no package: people copy its file
-import reference_client as reference
 from laconic.scene import METHODS
 
 from .contract import attribute, choices, is_protected, limits, load
 from .wire_parameters import PARAMETERS
 
 HERE = Path(__file__).resolve().parent
+FIRMWARE = HERE.parents[2] / "firmware_stub"
 PAGE = HERE.parents[2] / "docs" / "wire.md"
+
+if TYPE_CHECKING:
+    import reference_client as reference
+else:  # people copy this file, so it is not part of a package and cannot be imported from here
+    reference = SimpleNamespace(**runpy.run_path(str(FIRMWARE / "reference_client.py")))
 
 NONCE, SESSION, STARTS = 0x0123ABCD, 0xC0FFEE11, 9
 PROTOCOLS = "1 canopen, 2 odrive, 3 robomaster (C620), 4 moteus, 5 robomaster-c610"
@@ -163,7 +169,7 @@ def examples(client: reference.Client) -> str:
 def page() -> str:
     """The whole text."""
     client = reference.Client(bus=None)
-    database = load(PAGE.parents[1] / "firmware_stub" / "laconic.dbc")
+    database = load(FIRMWARE / "laconic.dbc")
     messages = sorted(database.messages, key=lambda message: message.frame_id)
     result, fields = database.get_message_by_name("RESULT"), field_choices(database)
     status = choices(result.get_signal_by_name("status"))

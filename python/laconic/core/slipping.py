@@ -61,10 +61,10 @@ class SlippingOutputs:
 
     motion: ArticulatedMotion
     slip_along_m_per_s: np.ndarray   # (N,)  of the contact, along the roller's axis; of a fixed wheel ahead
-    slip_across_m_per_s: np.ndarray  # (N,)
+    slip_across_m_per_s: np.ndarray  # (N,)  90° to the left of it
     contact_state: np.ndarray        # (N,)  0 sticks or rolls, 1 slips, 2 has lifted
-    along_N: np.ndarray              # (N,)
-    across_N: np.ndarray             # (N,)
+    along_N: np.ndarray              # (N,)  along the roller's axis; of a fixed wheel ahead
+    lateral_N: np.ndarray            # (N,)  90° to the right of it
     scrub_Nm: np.ndarray             # (N,)  about the vertical
     normal_N: np.ndarray             # (N + S,)  wheels, then supports
     wheel_torque_Nm: np.ndarray      # (N,)  of the motor on the axle

@@ -29,10 +29,11 @@ OF_WHEEL = {"load_N": "given_load_N", "creep": "wheel_creep"}
 
 
 INSTEAD = {CURVATURE: "steering_twist and steering_twist_rate",
-           ANGLE: "steering_rate_rad_per_s of prescribed hinges, and steering_twist of coordinated ones"}
-"""Inputs of scenes that the FMU does not have, and what it takes instead."""
-SLIPPING_INSTEAD = dict.fromkeys((CURVATURE, ANGLE, TWIST), "steering_rate_rad_per_s of prescribed hinges, and "
-                                                            "steering_angle_rad of servos")
+           ANGLE: "steering_twist and steering_twist_rate", f"{ANGLE}[": "steering_rate_rad_per_s of prescribed hinges"}
+"""Inputs of scenes that the FMU does not have, and its inputs that replace them. The angle without a name is that of
+coordinated hinges; with a name, that of a prescribed one."""
+SLIPPING_INSTEAD = dict.fromkeys((CURVATURE, ANGLE, f"{ANGLE}[", TWIST), "steering_rate_rad_per_s of prescribed "
+                                                                         "hinges, and steering_angle_rad of servos")
 """The same on ground with friction."""
 
 
@@ -128,14 +129,13 @@ def left_out(scene: Scene) -> str:
                (hinge.has_stops and not _stops_itself(scene, hinge))]
     found = []
     if limited:
-        found.append(f"the FMU has no limits of angle and rate: those of {', '.join(limited)} are left out; keep to "
-                     "them in what steers it")
+        found.append(f"the FMU does not limit angle and rate of {', '.join(limited)}; do so in your controller")
     there = [f"{ANGLE}[{hinge.name}]" for hinge in scene.hinges if hinge.follows == "angle"]
     words = SLIPPING_INSTEAD if scene.slips_on_hinges else INSTEAD
     commands = dict.fromkeys(each.signal for each in scene.inputs
                              if each.signal.partition("[")[0] in words and each.signal not in there)
     if commands:
-        instead = dict.fromkeys(words[each.partition("[")[0]] for each in commands)
-        found.append(f"the FMU has no inputs {', '.join(commands)}, which the scene steers by; give "
-                     f"{' and '.join(instead)}")
-    return f"{scene.path}: {'; '.join(found)}" if found else ""
+        instead = dict.fromkeys(words[f"{ANGLE}[" if each.startswith(f"{ANGLE}[") else each.partition("[")[0]]
+                                for each in commands)
+        found.append(f"in place of {', '.join(commands)} give {' and '.join(instead)}")
+    return f"{scene.path}: {'; '.join(found)}: see docs/fmu.md" if found else ""

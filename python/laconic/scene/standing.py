@@ -71,7 +71,7 @@ def standing_of(scene: Scene) -> Standing:
 
 
 def why_it_tips(vehicle: Mapping[str, Any]) -> str:
-    """Empty where the centre of mass lies above the polygon of wheels and supports."""
+    """Empty where the centre of mass lies inside the polygon of wheels and supports, and not on its edge."""
     points = np.array([(each["x_m"], each["y_m"]) for each in (*vehicle["wheel"], *vehicle["support"])], float)
     names = [*(f"wheel {i}" for i in range(1, len(vehicle["wheel"]) + 1)),
              *(f"support {i}" for i in range(1, len(vehicle["support"]) + 1))]
@@ -79,7 +79,7 @@ def why_it_tips(vehicle: Mapping[str, Any]) -> str:
 
 
 def why_points_tip(points: np.ndarray, names: Sequence[str], centre: np.ndarray) -> str:
-    """Empty where the centre, shape (2,), lies above the polygon of points, shape (n, 2)."""
+    """Empty where the centre, shape (2,), lies inside the polygon of points, shape (n, 2), and not on its edge."""
     if (line := _one_line(points)) is not None:
         off_mm = 1e3 * abs(float(np.cross([*line[1], 0.0], [*(centre - line[0]), 0.0])[2]))
         where = "on one point" if len(points) == 1 else f"in one line ({_listed(names)})"
@@ -89,8 +89,12 @@ def why_points_tip(points: np.ndarray, names: Sequence[str], centre: np.ndarray)
     edges = [(hull[k], hull[(k + 1) % len(hull)]) for k in range(len(hull))]
     outside = [(_right_of(points[a], points[b], centre), a, b) for a, b in edges]
     distance, a, b = max(outside)
-    if distance <= OUTSIDE_M:
+    if distance < -OUTSIDE_M:
         return ""
+    if distance <= OUTSIDE_M:
+        return (f"it may tip: its centre of mass is above the line from {names[a]} to {names[b]}, the edge of what it "
+                "stands on, so that points off this line carry nothing; check com_x_m and com_y_m; the run holds it "
+                "level")
     return (f"it tips: its centre of mass lies {1e3 * distance:.3g} mm outside what it stands on, beyond the line from "
             f"{names[a]} to {names[b]}; {REMEDY}")
 

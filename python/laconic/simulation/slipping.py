@@ -35,7 +35,7 @@ USUAL = ("x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per
          "slip_across_m_per_s", "contact_state", "wheel_load_N", "energy_J", *BOOK)
 OF_MOTION = ("wheel_speed_rad_per_s", "wheel_angle_rad", "hinge_angle_rad", "hinge_rate_rad_per_s", "body_x_m",
              "body_y_m", "body_heading_rad")
-OF_OUTPUTS = {"wheel_torque_Nm": "wheel_torque_Nm", "wheel_reaction_N": "along_N", "wheel_lateral_N": "across_N",
+OF_OUTPUTS = {"wheel_torque_Nm": "wheel_torque_Nm", "wheel_reaction_N": "along_N", "wheel_lateral_N": "lateral_N",
               "scrub_torque_Nm": "scrub_Nm", "wheel_load_N": "normal_N", "hinge_reaction_Nm": "hinge_torque_Nm",
               "hinge_friction_Nm": "friction_torque_Nm", "hinge_stop_Nm": "stop_torque_Nm",
               **{name: name for name in ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit",

@@ -175,7 +175,8 @@ export interface HingedOutputs {
   /** 0 sticks or rolls, 1 slips, 2 has lifted. */
   contact_state?: number[];
   along_N?: number[];
-  across_N?: number[];
+  /** 90 degrees to the right of along_N; slip_across_m_per_s counts to the left. */
+  lateral_N?: number[];
   scrub_Nm?: number[];
   /** Of wheels, then of supports. */
   normal_N?: number[];

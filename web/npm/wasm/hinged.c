@@ -168,7 +168,7 @@ static const laconic_web_output outputs[] = {
     SLIPPING(slip_across_m_per_s),
     OUTPUT(contact_state, contact_state),
     SLIPPING(along_N),
-    SLIPPING(across_N),
+    SLIPPING(lateral_N),
     SLIPPING(scrub_Nm),
     SLIPPING(normal_N),
     SLIPPING(wheel_torque_Nm),

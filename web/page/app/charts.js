@@ -132,13 +132,13 @@ function showWheelGrip(
   /** @type {number} */ i,
   /** @type {number} */ friction,
 ) {
-  const force = Math.hypot(out.along_N[i], (out.lateral_N ?? out.across_N)[i]),
+  const force = Math.hypot(out.along_N[i], out.lateral_N[i]),
     held = friction * out.normal_N[i];
   const share = held > 0 ? force / held : 0;
   row.children[1].firstChild.style.width = `${Math.min(100, 100 * share).toFixed(1)}%`;
   row.classList.toggle("lost", out.contact_state ? out.contact_state[i] > 0 : share > 1);
   const grip = held > 0 && Number.isFinite(share) ? `${fixed(100 * Math.min(share, 9.99), 0)} %` : "–";
-  const speed = out.across_N
+  const speed = out.scrub_Nm
     ? `slip ${fixed(Math.hypot(out.slip_along_m_per_s[i], out.slip_across_m_per_s[i]))} m/s`
     : `${fixed(out.wheel_speed_rad_per_s[i], 1)} rad/s`;
   row.children[2].textContent = `${speed}, ${grip}`;

@@ -189,7 +189,7 @@ static void print_outputs(void) {
     print_many(o.slip_across_m_per_s, n);
     for (int i = 0; i < n; i++) printf(" %d", (int)o.contact_state[i]);
     print_many(o.along_N, n);
-    print_many(o.across_N, n);
+    print_many(o.lateral_N, n);
     print_many(o.normal_N, model.point_count);
     print_many(o.hinge_torque_Nm, h);
     print_many(o.friction_torque_Nm, h);

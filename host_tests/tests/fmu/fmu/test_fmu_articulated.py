@@ -341,7 +341,7 @@ def test_partial_derivatives_are_refused_by_one_line(version: int) -> None:
 def test_the_command_writes_it_and_states_what_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "tugger.fmu"
     assert run(["fmu", "tugger_train", "--fmi", "2", "-o", str(out)]) == 0
-    assert "the FMU has no limits of angle and rate: those of front are left out" in capsys.readouterr().err
+    assert "the FMU does not limit angle and rate of front" in capsys.readouterr().err
     description = fmpy.read_model_description(str(out))
     starts = {variable.name: variable.start for variable in description.modelVariables}
     assert description.coSimulation.modelIdentifier == "LaconicArticulated"

@@ -344,7 +344,7 @@ def test_the_command_writes_it_and_states_what_is_left_out(tmp_path: Path, capsy
                      "\n[ground]\nfriction_coefficient = 0.9\n", encoding="utf-8")
     assert run(["fmu", str(scene), "--fmi", "3", "-o", str(out)]) == 0
     printed = capsys.readouterr().err
-    assert "the FMU has no inputs steering_twist[1], steering_twist[2], steering_twist[3]" in printed
+    assert "in place of steering_twist[1], steering_twist[2], steering_twist[3] give " in printed
     assert "steering_rate_rad_per_s of prescribed hinges" in printed
     assert fmpy.read_model_description(str(out)).coSimulation.modelIdentifier == "LaconicSlipping"
 

@@ -209,7 +209,7 @@ for (const input of inputs) {
 }
 console.log(JSON.stringify([one, many].map((robot) => [robot.outputs(), robot.limited])));
 """
-OF_COMMAND = {"across_N": "wheel_lateral_N", "along_N": "wheel_reaction_N", "normal_N": "wheel_load_N",
+OF_COMMAND = {"lateral_N": "wheel_lateral_N", "along_N": "wheel_reaction_N", "normal_N": "wheel_load_N",
               "scrub_Nm": "scrub_torque_Nm"}
 
 

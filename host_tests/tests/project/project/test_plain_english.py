@@ -9,7 +9,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import click
 import pytest
+
+from laconic.cli.main import commands
 
 SOURCE = Path(__file__).resolve().parents[4]
 GENERATED = {"signals.md", "wire.md"}
@@ -60,9 +63,13 @@ def length(sentence: str) -> int:
 
 def habits(text: str) -> list[str]:
     """What a page says in a way that the lists rule out."""
-    found = [f"{hit[0]!r}: {better}" for each in blocks(text) for pattern, better in WORDS.items()
-             for hit in re.finditer(pattern, each, re.I)]
+    found = [habit for each in blocks(text) for habit in habits_of_words(each)]
     return found + [each[:60] for each in sentences(text) if each.split()[0] in OPENINGS and not each.endswith("?")]
+
+
+def habits_of_words(line: str) -> list[str]:
+    """The words of a line that the list rules out."""
+    return [f"{hit[0]!r}: {better}" for pattern, better in WORDS.items() for hit in re.finditer(pattern, line, re.I)]
 
 
 def counts(text: str) -> tuple[int, float, float]:
@@ -86,6 +93,14 @@ def test_a_page_or_public_header_is_in_plain_english(page: Path) -> None:
     assert mean <= MOST_MEAN
     assert share_of_long <= MOST_LONG, [each for each in sentences(text) if length(each) > LONG]
     assert habits(text) == []
+
+
+@pytest.mark.parametrize("name", commands.list_commands(click.Context(commands)))
+def test_the_help_of_a_command_is_in_plain_english(name: str) -> None:
+    command = commands.get_command(click.Context(commands), name)
+    assert command is not None
+    texts = [command.help, *(getattr(option, "help", None) for option in command.params)]
+    assert [each for text in texts for each in habits_of_words(" ".join((text or "").split()))] == []
 
 
 def test_the_manual_keeps_its_size() -> None:

@@ -32,6 +32,7 @@ WRONG = {
     "report s1": "extra argument",
     "benchmark": "WHAT", "benchmark fast": "batch", "benchmark batch --lanes 0": "--lanes",
     "replay log": "LOG", "verify": "REFERENCE",
+    "scenes no_such -o my.toml": "known are", "scenes s1 -o s1.fmu": ".toml", "scenes -o my.toml": "NAME",
     "rig s1 --board nothing": "--board", "trim s1 --real 3": "--real", "analyse s1 --only all": "--only",
     # numbers
     "simulate s1 --step abc": "--step", "simulate s1 --step ''": "--step", "simulate s1 --step 0": "--step",

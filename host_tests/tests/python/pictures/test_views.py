@@ -144,7 +144,7 @@ def test_options_that_do_not_go_together_are_refused(arguments, words, tmp_path,
 
 def test_without_the_package_rerun_says_how_to_install_it(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "rerun", None)
-    monkeypatch.setattr("laconic.base.extras.requires", lambda _: ["rerun-sdk>=0.24 ; extra == 'rerun'"])
+    monkeypatch.setattr("importlib.metadata.requires", lambda _: ["rerun-sdk>=0.24 ; extra == 'rerun'"])
     assert run(["simulate", "turtlebot3_burger", "--rerun", str(tmp_path / "run.rrd")]) == 2
     assert 'rerun-sdk, which is not installed; pip install "laconic[rerun]"' in capsys.readouterr().err
 

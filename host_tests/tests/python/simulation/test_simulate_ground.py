@@ -12,7 +12,8 @@ import pytest
 from laconic.cli.main import run
 from laconic.core.grip import Grip, GripEvent
 from laconic.fmu import make_fmu
-from laconic.scene import read_scene, rigid_scene_names
+from laconic.scene import build_scene, read_scene, rigid_scene_names
+from laconic.scene.scene_tables import scene_tables
 from laconic.simulation import simulate
 from laconic.tools.demo.fmu_rows import fmu_rows
 
@@ -60,7 +61,7 @@ def test_the_wheels_that_slip_are_listed_for_programs_and_the_remedy_works(tmp_p
         "[run]", "[ground]\nfriction_coefficient = 0.6\n[run]"))
     assert run(["simulate", str(scene)]) == 0
     printed = capsys.readouterr()
-    assert printed.err == "" and "slip and dragging rollers took" in printed.out
+    assert printed.err == "" and "energy lost by slip and dragging rollers: " in printed.out
 
 
 def test_a_wheel_that_lifts_is_reported_with_its_normal_load(tmp_path, capsys):
@@ -153,7 +154,7 @@ def test_a_run_whose_wheels_slip_is_not_said_to_hold_the_ground(tmp_path, capsys
     assert found["slip_loss_J"] > 10.0
 
 
-@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (60.0, "slip and dragging rollers took ")])
+@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (60.0, "energy lost by slip and dragging ")])
 def test_a_run_on_ground_with_friction_ends_with_what_slip_took(
         tmp_path: Path, capsys: pytest.CaptureFixture[str], volts: float, told: str) -> None:
     scene = Path(mecanum(tmp_path, ground="com_z_m = 0.3", volts=volts))
@@ -198,3 +199,16 @@ def test_one_scene_keeps_the_warning_on_purpose_and_says_so(capsys: pytest.Captu
     assert run(["simulate", ON_PURPOSE]) == 0
     told = "the ground cannot give what this run needs: wheels 1 and 2 slip, and first wheel 2 slips at 0 s"
     assert told in capsys.readouterr().err
+
+
+def test_a_motor_of_gain_and_damping_has_a_supply_if_it_is_given_as_one_of_1_ohm() -> None:
+    """As docs/scenes.md describes it."""
+    tables = scene_tables("turtlebot3_burger").entries
+    vehicle = {key: value for key, value in tables["vehicle"].items() if not key.startswith("motor_")}
+    gain, damping = tables["vehicle"]["motor_gain_Nm_per_V"], tables["vehicle"]["motor_damping_Nms"]
+    vehicle["motor"] = {"resistance_ohm": 1.0, "torque_constant_Nm_per_A": gain, "back_emf_Vs_per_rad": damping / gain,
+                        "gear_ratio": 1.0}
+    end, same = (simulate(build_scene(each)).columns["x_m"][-1] for each in (tables, tables | {"vehicle": vehicle}))
+    assert same == pytest.approx(end, rel=1e-12)
+    weak = simulate(build_scene(tables | {"vehicle": vehicle | {"drive": {"supply_V": 6.0}}}))
+    assert weak.columns["x_m"][-1] != pytest.approx(end, rel=0.1)

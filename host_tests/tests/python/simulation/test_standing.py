@@ -90,3 +90,25 @@ def test_a_point_that_cannot_pull_carries_nothing(tmp_path: Path) -> None:
     assert not standing.tips
     assert min((*standing.wheel_N, *standing.support_N)) >= 0.0
     assert sum((*standing.wheel_N, *standing.support_N)) == pytest.approx(10.0 * G)
+
+
+def test_a_centre_of_mass_on_the_edge_of_what_the_robot_stands_on_is_a_warning(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["simulate", str(written(tmp_path, BALL))]) == 0
+    printed = capsys.readouterr()
+    assert "support 1 0 N (0 %)" in printed.out
+    assert "the robot: it may tip: its centre of mass is above the line from wheel" in printed.err
+    assert standing_of(read_scene(written(tmp_path, BALL, com_x_m=-1e-4))).tips == ""
+
+
+@pytest.mark.parametrize(("height_m", "ground"), [(0.0, ""), (0.2, ""), (0.0, "[ground]")])
+def test_a_run_that_judges_grip_states_that_no_height_shifts_no_load(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str], height_m: float, ground: str) -> None:
+    friction = (table("[ground]", friction_coefficient=0.5),) if ground else ()
+    own = {} if ground else {"friction_coefficient": 0.5}
+    path = str(written(tmp_path, BALL, *friction, com_x_m=-0.1, com_z_m=height_m, **own))
+    line = "com_z_m is 0 or not given: accelerations shift no load"
+    assert run(["simulate", path]) == 0
+    assert (line in capsys.readouterr().out.splitlines()) is (height_m == 0.0)
+    assert run(["simulate", path, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["standing"]["assumed"] == ([line] if height_m == 0.0 else [])

@@ -126,7 +126,7 @@ def test_a_gyro_alone_tells_how_the_wheels_distance_fits_their_radii():
 
 
 WRONG = {
-    "kinds that differ": (("mass", "radius"), {}, "--free mass beside radius: voltages tell the one"),
+    "kinds that differ": (("mass", "radius"), {}, "--free mass with radius: voltages determine the first"),
     "no voltages": (("mass",), {"voltage_V": None}, "has no voltages"),
     "wheels that stand": (("mass",), {"wheel_angle_rad": np.zeros((61, 2))}, "its wheels stand"),
 }

@@ -21,9 +21,9 @@ EXPORTS = (".yaml", ".yml", ".h", ".toml")
 @map_option
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="Write audit.md, audit.json and a picture there.")
 @click.option("--export", "exports", type=OutputFile(*EXPORTS), multiple=True, metavar="FILE",
-              help="Write what was found: .yaml for ros2_controllers, .h for firmware, .toml as a scene.")
+              help="Write the result: .yaml for ros2_controllers, .h for firmware, .toml as a scene.")
 @click.option("--map-out", type=OutputFile(".toml", stdout=False), metavar="FITTED_MAP.toml",
-              help="With steered wheels: write the map with what was found of it (steering, lag, tracker). "
+              help="With steered wheels: write the map with its identified values (steering, lag, tracker). "
               "Needs --map.")
 @json_flag("Machine-readable result on stdout.")
 def command(logs: tuple[Path, ...], scene: str, map_path: Path | None, out: Path | None, exports: tuple[Path, ...],

@@ -37,7 +37,7 @@ OF_RUN = ("--url", "--enable", "--duration", "--step", "--log")
 @click.option("--track", metavar="M", help="Between left and right wheels: 0.52, or 20.5in.")
 @click.option("--wheelbase", metavar="M", help="Between front and rear wheels.  [default: the track]")
 @click.option("--motor", default="krakenX60", show_default=True, help=f"One of {', '.join(MOTORS)}.")
-@click.option("--motors", type=int, default=1, show_default=True, help="So many on a gearbox: of a module, of a "
+@click.option("--motors", type=int, default=1, show_default=True, help="Number on a gearbox: of a module, of a "
               "mecanum wheel, of a side of a differential drive.")
 @click.option("--gearing", type=float, help="Turns of the motor for one of the wheel.")
 @click.option("--wheel-radius", metavar="M", help="0.0762, or 3in.")

@@ -19,9 +19,9 @@ LEFT_OUT = ("session", "run")
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.option("--scene", type=SceneName(hinges=True), required=True, help="The robot with its nominal values.")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
-              help="Write the scene with the values found; - for stdout.")
+              help="Write the scene with the identified values; - for stdout.")
 @click.option("--map-out", type=OutputFile(".toml", stdout=False), metavar="FITTED_MAP.toml",
-              help="Write the map with what was found of it: steering, lags, place of the tracker. Needs --map.")
+              help="Write the map with its identified values: steering, lags, place of the tracker. Needs --map.")
 @click.option("--free", metavar="NAMES",
               help="Parameters that may change [default: radius,distance, also with casters or trailers; with "
               "steered wheels radius,wheelbase,steering-gain,steering-offset, and distance for wheelbase where "
@@ -34,14 +34,14 @@ LEFT_OUT = ("session", "run")
               "viscous (of motors), controller (of the wheels' speeds). From voltages or currents: mass, yaw-inertia, "
               "wheel-inertia, motor-gain, motor-damping, resistance, torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
-              help="How far radii and distances may be from nominal beforehand (standard deviation).")
+              help="Expected deviation of radii and distances from nominal (standard deviation).")
 @map_option
 @click.option("--judge", type=InputPath(), multiple=True, metavar="LOG...",
-              help="Other runs, replayed with the values found: all words up to the next option.")
+              help="Other runs, replayed with the identified values: all names up to the next option.")
 @click.option("--leave-out", type=click.Choice(LEFT_OUT),
               help="Judge each session (folder) or run by a fit on the others.")
 @click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
-              help="Draw true, nominal and identified paths, the first run of each session.")
+              help="Draw recorded, nominal and identified paths of the first run of each session.")
 @json_flag("Machine-readable result on stdout.")
 def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path | None, free: str | None,
             prior_percent: float,
@@ -49,10 +49,11 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
             json_wanted: bool) -> None:
     """Finds parameters of a scene from LOG..., recorded runs or folders of them.
 
-    Robust nonlinear least squares on the distance between the rolled and the recorded path, or on the turn of a gyro
-    without a recorded pose. On ground with friction the core moves, its wheels held at the recorded speeds, and steady
-    currents also count. Masses and motors are found from the wheel speeds that recorded voltages or currents give. Each
-    value has a 95 % interval. Parameters that the runs do not determine stay nominal, and the report states which run
+    Robust nonlinear least squares minimizes the distance between computed and recorded path, or the error of the
+    gyro's turn if no pose is recorded. On ground with friction the core computes the path, with its wheels held at the
+    recorded speeds, and steady currents also count. Masses and motors are found from the wheel speeds that recorded
+    voltages or currents give. Each value has a 95 % interval. Parameters that the runs do not determine stay nominal,
+    and the report states which run
     would determine them. FITTED.toml is a complete scene, with sources and intervals in comments. The exit status is 1
     if the fitted values are worse than the nominal ones on runs to judge or left out. With -o - the report is on
     stderr.

@@ -26,7 +26,7 @@ def command(log: Path, out: Path | None, scene: str | None, topic: str | None, j
     MCAP, ULog).
 
     Columns or topics are listed with what they probably are. MAP.toml is a map to begin with, for --map of replay,
-    identify and audit; what it lacks is printed, and stands in it as comments.
+    identify and audit; what it lacks is printed, and written into it as comments.
     """
     from laconic.robot.logs.fields import fields_of
     from laconic.robot.logs.inspection import inspect

@@ -22,9 +22,9 @@ INPUTS = ("wheel-speeds", "currents", "voltages", "set-speeds")
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.argument("scene", type=SceneName(hinges=True))
 @click.option("--inputs", type=click.Choice(INPUTS),
-              help="The columns of the log that drive the model. Default: voltages if its columns are signals, in one "
-              "file or many, without casters and trailers; currents if the log has them and the ground no "
-              "friction; else the wheels' speeds.")
+              help="The columns of the log that drive the model. Default: voltages if its columns are signals and the "
+              "robot has no casters or trailers; currents if the log has them and the ground has no friction; "
+              "otherwise the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. Default: every other run of a folder.")
 @map_option
@@ -36,19 +36,19 @@ def command(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tupl
     """Compares LOG..., recorded runs or folders of them, with the model of SCENE, which comes last.
 
     \b
-    wheel-speeds  the recorded rotation of the wheels is rolled without slip and set
-                  beside the true path; with friction in [ground] the core moves, its
-                  wheels held at these speeds
+    wheel-speeds  the path that the recorded rotation of the wheels gives without slip
+                  is compared with the recorded path; with friction in [ground] the
+                  core computes the path, with its wheels held at these speeds
     currents      the core, driven by the measured currents as torques, predicts wheel
                   speeds and steady currents; without friction in [ground], friction is
                   fitted by least squares before
-    set-speeds    the same through the scene's [speed_controller], which makes currents
-                  of them
-    voltages      the same by the motors' voltages; or a file whose first column is
-                  time_s and whose others have names of signals, as `simulate --out F.csv
-                  --inputs` writes it: its inputs drive the core, and every other signal
-                  in it is compared; of several such files or a folder the voltages
-                  drive, and the paths are compared
+    set-speeds    the same; the scene's [speed_controller] computes the currents from
+                  the set speeds
+    voltages      the same with the motors' voltages. LOG may also be a file whose first
+                  column is time_s and whose others have names of signals, as `simulate
+                  --out F.csv --inputs` writes it: its inputs drive the core, and every
+                  other signal in it is compared. With several such files, or a folder,
+                  the voltages drive the core, and the paths are compared
 
     Maps that come with the project recognise their logs; --map names the map of others (docs/logs.md).
     """
@@ -73,7 +73,7 @@ def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tu
     if (first := next((log for log in logs if log.suffix == ".toml"), None)) and not scene.endswith(".toml"):
         raise BadInput(f"{first}: is a scene, which comes last: laconic replay LOG... SCENE")
     if fit_on and inputs not in (None, "currents"):
-        raise BadInput(f"--fit: needs measured currents; leave it out beside --inputs {inputs}")
+        raise BadInput(f"--fit: needs measured currents; leave it out with --inputs {inputs}")
     is_of_signals = len(logs) == 1 and map_path is None and is_signal_log(logs[0])
     if is_of_signals and fit_on and inputs is None:
         raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "

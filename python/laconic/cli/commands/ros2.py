@@ -42,19 +42,19 @@ MOST_ENDS = 5  # robots whose last pose is printed
 @click.option("--router", default="tcp/localhost:7447", metavar="ENDPOINT", show_default=True,
               help="With --rmw zenoh: where to connect.")
 @click.option("--namespace", default="/", help="Of all topics, services and of the node.")
-@click.option("--robots", type=int, default=1, help="So many robots, in namespaces robot1, robot2 …")
+@click.option("--robots", type=int, default=1, help="Number of robots, in namespaces robot1, robot2 …")
 @click.option("--spacing", "spacing_m", type=float, default=1.0, metavar="METRES", help="Between them at the start.")
 @click.option("--rate", "rate_Hz", type=float, default=50.0, metavar="HZ", show_default=True, help="Of all topics.")
 @click.option("--sim-time", "is_sim_time", is_flag=True, help="Stamps of simulated time, and /clock.")
 @click.option("--speed", type=float, default=1.0, help="With --sim-time: seconds of the robot in a real one.")
-@click.option("--stamped", is_flag=True, help="Hear TwistStamped alone on cmd_vel.  [default: Twist, too]")
+@click.option("--stamped", is_flag=True, help="Hear TwistStamped alone on cmd_vel.  [default: also Twist]")
 @click.option("--unstamped", is_flag=True, help="Hear Twist alone on cmd_vel.")
 @click.option("--frame", "frames", multiple=True, metavar="NAME=FRAME",
               help="Another name of the frame base, odom, map, imu or scan.")
 @click.option("--shared-tf", "shares_tf", is_flag=True, help="/tf for all, with the namespace before each frame.")
 @click.option("--urdf", type=InputPath(), metavar="FILE", help="Publish this file as robot_description.")
 @click.option("--loopback", "is_loopback", is_flag=True,
-              help="For Nav2 without localization: initialpose, and map → odom by the true pose.")
+              help="For Nav2 without localization: initialpose, and map → odom from the exact pose.")
 @click.option("--map", "map_file", type=InputPath(), metavar="FILE.yaml",
               help="With --loopback: publish this map, and the scan that the robot sees in it.")
 @click.option("--no-discovery-info", "is_silent", is_flag=True, help="Leave the node out of the graph.")

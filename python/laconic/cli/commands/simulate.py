@@ -39,6 +39,7 @@ from laconic.simulation.csv_text import csv_text
 from laconic.simulation.loads import Loads
 from laconic.simulation.run import is_watched
 
+NO_HEIGHT = "com_z_m is 0 or not given: accelerations shift no load"
 FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
 ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the radius, slid with all of its weight
 
@@ -194,7 +195,13 @@ def words_of_standing(run: Trajectory) -> list[str]:
     standing = resting(run)
     if standing is None:
         return []
-    return [standing.in_words(), *([f"the robot: {standing.tips}"] if standing.tips else [])]
+    return [standing.in_words(), *assumed_height(run.scene),
+            *([f"the robot: {standing.tips}"] if standing.tips else [])]
+
+
+def assumed_height(scene: Scene) -> list[str]:
+    """What is assumed where loads are judged and the scene does not state the height of the centre of mass."""
+    return [] if scene.vehicle["com_z_m"] else [NO_HEIGHT]
 
 
 def kept_in(*paths: Path | None) -> str:
@@ -225,7 +232,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "no_slip": run.grip.as_json() if run.grip else margin_json(run),
         "limited": [asdict(each) for each in run.limited], "folded": [asdict(each) for each in run.folded],
         "lifted": {"wheel": run.lifted[0], "time_s": run.lifted[1]} if run.lifted else None,
-        "standing": standing.as_json() if standing else None,
+        "standing": standing.as_json() | {"assumed": assumed_height(run.scene)} if standing else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}
 
@@ -254,8 +261,8 @@ def words_of_slip(run: Trajectory) -> list[str]:
     rounding_J = ROLLED * vehicle["mass_kg"] * vehicle["wheel_radius_m"]
     what = "slip and scrub" if run.scene.has_hinges else "slip and dragging rollers"
     named = f", {wheels_text(run.slipping_wheels)} slipped" if run.slipping_wheels else ""
-    told = [f"{what} took {loss_J:.3g} J{named}; contact_state and slip_along_m_per_s of [outputs] tell "
-            f"{'when' if named else 'where'}" if loss_J > rounding_J else "no wheel slipped"]
+    told = [f"energy lost by {what}: {loss_J:.3g} J{named} ({'when' if named else 'which wheels'}: contact_state, "
+            "slip_along_m_per_s in [outputs])" if loss_J > rounding_J else "no wheel slipped"]
     if step_s > FRICTION_STEP_S:
         told.append("ground with friction is stepped to first order, and losses are the first to be off: compare "
                     f"path and losses with --step {FRICTION_STEP_S:g}")

@@ -36,8 +36,8 @@ def kind_of(logs: Sequence[Log], parameters: Parameters) -> str:
     moving = [group for group in groups if group in motion.GROUPS]
     others = [group for group in groups if group not in motion.GROUPS]
     if moving and others:
-        raise BadInput(f"--free {moving[0]} beside {others[0]}: voltages tell the one, paths the other; find "
-                       f"{others[0]} first, then {moving[0]} with the fitted scene")
+        raise BadInput(f"--free {moving[0]} with {others[0]}: voltages determine the first, paths the second; "
+                       f"identify {others[0]} first, then {moving[0]} with the fitted scene")
     if moving:
         return "motion"
     return "turn" if not any(group in ground.GROUPS for group in groups) and all(

@@ -108,8 +108,8 @@ def in_words(replay: Replay) -> list[str]:
     unseen = any(c.recording.name not in replay.fitted_on for c in replay.comparisons)
     judged = "the runs that were not fitted" if unseen else "the very runs of the fit"
     words.append(f"Steady currents of {judged}: (4.7) alone, with the best constant damping, is wrong by "
-                 f"{ideal:.2f} A of {size:.2f} A; with a dry-friction torque per wheel by {dry:.2f} A; with a drag "
-                 f"against the travel besides by {drag:.2f} A.")
+                 f"{ideal:.2f} A of {size:.2f} A; with a dry-friction torque per wheel by {dry:.2f} A; and also "
+                 f"with a drag against the travel by {drag:.2f} A.")
     words.append(_damping_words(replay.models[1]))
     words.append(_drag_words(replay.models[2]))
     words.append(_transient_words(replay))
@@ -140,7 +140,7 @@ def _slip_words(replay: Replay) -> str:
 def _damping_words(dry: Friction) -> str:
     value, half = dry.values[0], dry.half_widths[0]
     if not np.isfinite(half):
-        return f"Damping beside dry friction: {value:.3g} N·m·s, from one run, so without an interval."
+        return f"Damping in addition to dry friction: {value:.3g} N·m·s, from one run, so without an interval."
     seen = "does not differ from zero" if abs(value) < half else "differs from zero"
     return (f"Once dry friction is allowed, the fitted damping {value:.3g} ± {half:.2g} N·m·s {seen}: what (4.7) has "
             "to call damping is mostly not proportional to speed.")

@@ -71,7 +71,7 @@ def as_numbers(found: RolledPaths) -> dict[str, Any]:
 
 def as_text(found: RolledPaths) -> str:
     """A report in Markdown."""
-    lines = [f"# {counted(len(found.logs), 'run')} beside {found.scene.name}", "",
+    lines = [f"# {counted(len(found.logs), 'run')} compared with {found.scene.name}", "",
              f"Inputs: {_said(found)}.", "", *error_table(found.errors)]
     lines += ["", *(f"**{each}**" for each in found.poor)] if found.poor else []
     lines += remark_lines(found.logs)

@@ -257,7 +257,7 @@ MOST_PANELS = 6
 def as_text(found: SignalReplay) -> str:
     """A report in Markdown."""
     log, run = found.log, found.scene.run
-    lines = [f"# {log.path.name} beside {found.scene.name}", "",
+    lines = [f"# {log.path.name} compared with {found.scene.name}", "",
              f"* {len(log.time_s)} rows, {log.begin_s:g} to {log.begin_s + log.time_s[-1]:g} s, in steps of "
              f"{run.step_s:g} s by {run.method}, {run.real}; the model starts as the scene does.",
              f"* {_inputs(found)}"]
@@ -306,7 +306,7 @@ def draw(found: SignalReplay, folder: Path) -> list[Path]:
         axes.plot(time_s[there], found.log.columns[each.signal][there], color="k", lw=2.4, alpha=0.35, label="file")
         axes.plot(time_s, found.model[each.signal], color="tab:blue", ls="--", label="model")
         axes.set_ylabel(each.signal, fontsize=8)
-    rows[0].set_title(wrapped(f"{found.log.path.name} beside {found.scene.name}", 80))
+    rows[0].set_title(wrapped(f"{found.log.path.name} compared with {found.scene.name}", 80))
     rows[-1].set_xlabel("time [s]")
     picture.legend(handles=rows[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
     save(picture, folder / "replay.png")
