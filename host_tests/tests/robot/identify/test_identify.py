@@ -58,6 +58,21 @@ def test_95_percent_intervals_hold_the_truth_in_about_95_percent_of_50_made_up_r
     assert abs(np.mean(held) - 0.95) < three_sigma
 
 
+def test_intervals_are_as_wide_as_noise_of_single_poses_scatters_the_values():
+    """A tracker with 2 mm and 0.3° in each pose, and none with a drift: the noise does not add up along the path."""
+    scene, free = read_scene("turtlebot3_burger"), ("radius", "distance")
+    parameters = geometry_of(scene, free)
+    vehicle = parameters.vehicle(scene.vehicle, truth := parameters.nominal * np.array([1.02, 0.99, 1.01]))
+    logs = [exact_run(scene, vehicle, (0.2, 0.0, yaw), str(yaw), samples=400) for yaw in (0.0, 0.5, -0.5)]
+    size, random = np.array([2e-3, 2e-3, np.deg2rad(0.3)]), np.random.default_rng(3)
+    found = [found_from(scene, [replace(log, pose=log.pose + size * random.standard_normal(log.pose.shape))
+                                for log in logs], free) for _ in range(20)]
+    values, half = (np.array([getattr(each, name) for each in found]) for name in ("values", "half_widths"))
+    assert (half.mean(axis=0) < 3.0 * values.std(axis=0, ddof=1)).all()
+    assert (half.mean(axis=0) > 1.3 * values.std(axis=0, ddof=1)).all()
+    assert (np.abs(values - truth) < half).mean() > 0.85
+
+
 def test_runs_without_noise_give_radii_distance_and_place():
     scene = read_scene("optiodom_omni3")
     parameters = geometry_of(scene, ("radius", "distance", "place"))

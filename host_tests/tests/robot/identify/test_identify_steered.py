@@ -328,10 +328,13 @@ def test_parameters_that_the_robot_has_not_are_refused_in_one_line(more, words, 
     assert words in why and why.count("\n") == 1
 
 
-def test_steered_parameters_are_refused_for_a_robot_without_hinges(tricycle_run, capsys):
+@pytest.mark.parametrize(("free", "remedy"), [
+    ("wheelbase", "take distance"), ("track", "take distance"), ("trail", "leave it out"), ("creep", "leave it out")])
+def test_steered_parameters_are_refused_for_a_robot_without_hinges_with_the_one_to_take(free, remedy, tricycle_run,
+                                                                                       capsys):
     assert run(["identify", str(tricycle_run / LOG), "--scene", str(scene_path("turtlebot3_burger")), "--map",
-                str(tricycle_run / "map.toml"), "--free", "wheelbase"]) == 2
-    assert "has none; leave it out" in capsys.readouterr().err
+                str(tricycle_run / "map.toml"), "--free", free]) == 2
+    assert f"has none; {remedy}" in capsys.readouterr().err
 
 
 def test_ticks_and_uneven_lines_make_no_wheel_slip_on_the_core():

@@ -57,7 +57,8 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
             raise BadInput(f"--free {unknown[0]}: is not found for vehicles with hinges; take some of "
                            f"{', '.join(makers)}")
         if unknown[0] in steered.MAKERS:
-            raise BadInput(f"--free {unknown[0]}: is of vehicles with hinges, and {scene.path} has none; leave it out")
+            remedy = "take distance" if unknown[0] in ("track", "wheelbase") else "leave it out"
+            raise BadInput(f"--free {unknown[0]}: is of vehicles with hinges, and {scene.path} has none; {remedy}")
         raise BadInput(f"--free: there is no {shown(unknown[0])}; {nearest_of(unknown[0], tuple(makers))}")
     return Parameters(tuple(found))
 

@@ -114,6 +114,7 @@ class GroundEvidence(RollingEvidence):
     """Runs whose wheels are held: path, and steady currents where a log has them and the motors are known."""
 
     difference = DIFFERENCE
+    has_noise = False
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
         super().__init__(core, scene_path, logs)

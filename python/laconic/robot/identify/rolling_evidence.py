@@ -3,12 +3,16 @@
 This is the path error that `laconic replay` judges. Its residuals are sums: an error of one stretch moves all of the
 path after it. So the covariance of the score is built from the errors of single stretches, each with its effect on what
 follows.
+
+Noise of single poses does not move the path after it. It makes neighbouring samples err against each other, which
+shows its size. Where it is most of a stretch's error, poses around the ends of stretches are averaged, the rest of the
+noise is taken out of the mean squares, and the noise itself counts once in each compared point.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +34,8 @@ if TYPE_CHECKING:
 POINTS = 120      # of a path that are compared
 STRETCHES = 24    # of a run whose errors count as independent
 SHORT = 0.2       # of the usual length: a shorter stretch has no clear direction
+MOSTLY = 0.5      # share of a stretch's squared error above which the tracker's noise is taken out of it
+DEVIATIONS = 3.5  # of chance, beyond which neighbouring samples that err against each other show noise
 
 
 @dataclass(frozen=True)
@@ -45,6 +51,7 @@ class Run:
     has_heading: bool = True
 
     time_s: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    seen: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # samples with a recorded pose
 
     def path(self, moved: np.ndarray, lag_s: float = 0.0) -> np.ndarray:
         """The path of displacements, from the true first pose; where positions alone are known, fitted to them. With a
@@ -63,6 +70,7 @@ class RollingEvidence:
     difference = 0.0
     floor: Floor | None = None     # of errors: what sampling and rounding make
     by_wheels = True
+    has_noise = True               # scores are without the noise of single poses, which noise_scores has
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
         self._core, self._path = core, scene_path
@@ -80,8 +88,15 @@ class RollingEvidence:
         found = []
         for run, jacobian in zip(self.runs, jacobians, strict=True):
             path = run.path(rolling.moved(run.rotation_rad, run.point), lag_s)
-            found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
+            found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1), noise_of(run, path)))
         return found
+
+    def noise_scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
+        """Of each run: one standard deviation of each pose's noise, times the Jacobian; independent rows."""
+        rolling, lag_s = rolling_of(self._core, vehicle, self._path), of_log(vehicle).clock_lag_s
+        paths = (run.path(rolling.moved(run.rotation_rad, run.point), lag_s) for run in self.runs)
+        return [_noise_scores(run, jacobian.reshape(len(run.taken), 2, -1), noise_of(run, path))
+                for run, path, jacobian in zip(self.runs, paths, jacobians, strict=True)]
 
     def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Of each stretch of each run: displacement ahead and to the left, turn."""
@@ -102,7 +117,7 @@ def run_of(log: Log, *, by_wheels: bool = True) -> Run:
     cuts = seen[np.unique(np.linspace(0, last, STRETCHES + 1).astype(int))]
     rotation = log.rotation_rad() if by_wheels else np.zeros((len(log.time_s) - 1, 0))
     return Run(rotation, pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))),
-               log.has_heading, log.time_s)
+               log.has_heading, log.time_s, seen)
 
 
 def path_residual(run: Run, path: np.ndarray) -> np.ndarray:
@@ -111,9 +126,63 @@ def path_residual(run: Run, path: np.ndarray) -> np.ndarray:
     return found
 
 
-def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
-    """jacobian: points × 2 × parameters."""
+@dataclass(frozen=True)
+class Noise:
+    """Of single poses, each on its own."""
+
+    place_m: float = 0.0
+    heading_rad: float = 0.0
+
+
+def noise_of(run: Run, path: np.ndarray) -> Noise:
+    """None unless it is most of the stretches' errors."""
+    if not run.has_heading or len(run.seen) < len(run.cuts):
+        return Noise()
+    error = relative(path, run.seen) - relative(run.pose, run.seen)
+    against = -(error[1:] * error[:-1]).mean(axis=0)
+    against[against * np.sqrt(len(error)) < DEVIATIONS * (error**2).mean(axis=0)] = 0.0
+    noise = Noise(float(np.sqrt(against[:2].mean())), float(np.sqrt(against[2])))
+    return noise if (_noise_share(run, noise, stretch_errors(run, path)) > MOSTLY).any() else Noise()
+
+
+def _noise_share(run: Run, noise: Noise, error: np.ndarray) -> np.ndarray:
+    """Of the mean squared error of stretches: ahead, left, turn."""
+    ahead, left, _ = (relative(run.pose, run.cuts) ** 2).mean(axis=0)
+    place, heading = noise.place_m**2, noise.heading_rad**2
+    made = np.array([2.0 * place + left * heading, 2.0 * place + ahead * heading, 2.0 * heading])
+    share: np.ndarray = np.minimum(1.0, made / np.maximum((error**2).mean(axis=0), 1e-300))
+    return share
+
+
+def _quiet_errors(run: Run, path: np.ndarray, noise: Noise) -> np.ndarray:
+    """Errors of stretches between poses that are averaged over a stretch, with what is left of the noise taken
+    out. Means of a drift that wanders differ less than it: by a third of the variance."""
+    off = path - run.pose
+    pose, ends = run.pose.copy(), np.searchsorted(run.seen, run.cuts)
+    half = max(int(np.diff(ends).min()) // 2, 1)
+    for cut, end in zip(run.cuts, ends, strict=True):
+        pose[cut] = path[cut] - off[run.seen[max(end - half, 0):end + half + 1]].mean(axis=0)
+    quiet, count = replace(run, pose=pose), 2 * half + 1
+    error = stretch_errors(quiet, path)
+    left = _noise_share(quiet, Noise(noise.place_m / count**0.5, noise.heading_rad / count**0.5), error)
+    found: np.ndarray = error * np.sqrt((1.0 - left) / (1.0 - 1.0 / 3.0))
+    return found
+
+
+def _noise_scores(run: Run, jacobian: np.ndarray, noise: Noise) -> np.ndarray:
+    """That of each compared point, and that of the pose from which the path starts, which moves all points."""
+    lever = run.pose[run.taken, :2] - run.pose[0, :2]
+    turned = np.einsum("kcp,kc->p", jacobian, np.column_stack([-lever[:, 1], lever[:, 0]]))
+    points = jacobian.reshape(-1, jacobian.shape[2])
+    return run.scale * np.vstack([noise.place_m * points, noise.place_m * jacobian.sum(axis=0),
+                                  noise.heading_rad * turned])
+
+
+def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray, noise: Noise | None = None) -> np.ndarray:
+    """jacobian: points × 2 × parameters; `noise` is taken out of the errors."""
     error = stretch_errors(run, path)
+    if noise is not None and noise != Noise():
+        error = _quiet_errors(run, path, noise)
     found = []
     for index, (begin, end) in enumerate(zip(run.cuts[:-1], run.cuts[1:], strict=True)):
         after = run.taken >= end

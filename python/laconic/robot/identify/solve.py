@@ -191,12 +191,15 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
     information = sum((w * j.T @ j for w, j in zip(squares, jacobians, strict=True)), np.zeros((count, count)))
     vehicle = parameters.vehicle(base, parameters.values(z))
     parts = [w * s for w, s in zip(squares, evidence.scores(vehicle, jacobians), strict=True)]
+    of_poses = getattr(evidence, "noise_scores", None) if getattr(evidence, "has_noise", False) else None
+    noise = [w * s for w, s in zip(squares, of_poses(vehicle, jacobians) if of_poses else [], strict=bool(of_poses))]
+    beside = np.vstack([*noise, np.zeros((0, count))]) / scale**2, np.eye(count)
     inverse = np.linalg.inv(information / scale**2 + np.eye(count))
 
     def covariance(rows: np.ndarray) -> np.ndarray:
         # a fit of whole paths does not make its stretches' errors smaller; sums over blocks it does
         correction = own if rows is single else len(rows) / max(len(rows) - count, 1)
-        roots = np.vstack([np.sqrt(correction) / scale**2 * rows, np.eye(count)]) @ inverse.T @ parameters.factor.T
+        roots = np.vstack([np.sqrt(correction) / scale**2 * rows, *beside]) @ inverse.T @ parameters.factor.T
         found: np.ndarray = roots.T @ roots  # never below 0, however nearly two parameters are one
         return found
 

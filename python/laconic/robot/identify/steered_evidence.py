@@ -43,6 +43,7 @@ class SteeredEvidence(RollingEvidence):
     say: an audit explains that error."""
 
     by_wheels = False
+    has_noise = False
 
     def __init__(self, scene: Scene, base: Vehicle, logs: Sequence[Log], sizes: np.ndarray | None = None,
                  whole: bool = False):
