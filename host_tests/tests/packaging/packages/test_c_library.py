@@ -219,7 +219,7 @@ def test_its_firmware_loop_compiles_and_a_plant_has_the_bytes_that_it_states(tmp
     section = PAGE.split("## In a firmware loop")[1]
     compiled("loop.c", LOOP + re.findall(r"```c\n(.*?)```", section, re.DOTALL)[0], "-DLACONIC_SINGLE")
     options: list[str] = []
-    rows = re.findall(r"^\| (.*) \| ([\d,]+) \|$", section.split("\n## ")[0], re.MULTILINE)
+    rows = re.findall(r"^\| ([^|]*) \| ([\d,]+) \|$", section.split("\n## ")[0], re.MULTILINE)
     hinged = " + ".join(f"sizeof(laconic_articulated_{part})" for part in ("model", "integrator", "state", "input"))
     for at, (build, size) in enumerate(rows):
         held = "sizeof(laconic_plant)" if at < OF_PLANT else hinged

@@ -27,7 +27,7 @@ from laconic.robot.logs.column_map import read_map
 from laconic.scene.scene import scene_of
 from laconic.scene.table import Table, read_toml
 
-NOT_RUN = 60  # a page that leaves out one more says so here, too
+NOT_RUN = 61  # a page that leaves out one more says so here, too
 OF_THE_READER = {"my.toml": "scenes/kuka_youbot.toml", "robot.urdf": ("docs/tutorial.md", "xml"),
                  "program.c": ("README.md", "c")}
 """Files that pages call by these names: a file of the project, or a page's first snippet in a language."""
