@@ -99,6 +99,9 @@ def test_a_poor_fit_and_a_session_that_spoils_the_others_are_named():
     mirrored = [replace(log, pose=log.pose * np.array([1.0, -1.0, -1.0])) for log in logs]
     words = identify(scene, mirrored, geometry_of(scene, ("radius", "distance"))).words
     assert any(word.startswith("The fit is poor: of") and "signs" in word for word in words)
+    wrong = [replace(log, pose=log.pose * np.array([1000.0, 1000.0, 1.0])) for log in logs]  # mm taken for metres
+    words = identify(scene, wrong, geometry_of(scene, ("radius", "distance"))).words
+    assert words[0].startswith("The fit is poor: of") and "`laconic replay` with this map" in words[0]
     assert not any("poor" in word or "Session" in word for word in identify(
         scene, logs, geometry_of(scene, ("radius", "distance"))).words)
 
@@ -201,4 +204,4 @@ def test_a_poor_fit_is_not_said_to_tell_every_parameter(monkeypatch):
 
     assert any(word.startswith("The runs tell every parameter") for word in words())
     monkeypatch.setattr("laconic.robot.identify.study.of_errors", lambda *_: ["The fit is poor."])
-    assert words()[-1] == "The fit is poor." and not any("every parameter better" in word for word in words())
+    assert words()[0] == "The fit is poor." and not any("every parameter better" in word for word in words())

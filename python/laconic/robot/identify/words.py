@@ -62,8 +62,8 @@ def in_words(scene: Scene, found: Fit, runs: Sequence[Log], advises: bool = True
 
 
 def with_errors(words: Sequence[str], errors: Sequence[str]) -> list[str]:
-    """Both; errors take the place of the sentence that all is well."""
-    return [*(word for word in words if word != TELLS_ALL or not errors), *errors]
+    """Errors first, as a poor fit makes the other sentences doubtful; they replace the one that all is well."""
+    return [*errors, *(word for word in words if word != TELLS_ALL or not errors)]
 
 
 def _at_bounds(found: Fit) -> list[tuple[str, float]]:
@@ -230,7 +230,8 @@ def _with_currents(core: Core, vehicle: dict[str, object], log: Log) -> Log:
 POOR = {"path_error": 0.02, "wheel_speed_error": 0.1}  # what a good model does not leave
 REMEDIES = {
     "path_error": "Wheels that roll leave less than {}: look at the order, signs and gear in the map, at the place of "
-                  "the marker (--free place), or at slip ([ground] with --free drag).",
+                  "the marker (--free place), or at slip ([ground] with --free drag). `laconic replay` with this map "
+                  "tries signs, order and units.",
     "friction": "Real floors seldom let more be said by this law; look at the loads (--free centre-of-mass, "
                 "wheel-friction), and trust no prediction beyond the directions and speeds of these runs.",
     "wheel_speed_error": "A good model leaves less than {}: look at the order, signs and units in the map, at dry "
@@ -258,7 +259,7 @@ def failures(study: Study) -> list[str]:
 
 def _of_fit(study: Study) -> list[str]:
     before, after = _mean(study, study.nominal), _mean(study, study.fitted)
-    if not len(study.found.parameters) or not after > POOR.get(study.measure, np.inf):
+    if not after > POOR.get(study.measure, np.inf):
         return []
     name, limit = SAID[study.measure][0], _said(study, POOR[study.measure])
     what = f"The fit is poor: of {_said(study, before)} {name} {_said(study, after)} are left"
