@@ -59,7 +59,7 @@ def resident_kb() -> int:
 
 
 # ---- Controllers that others wrote drive a played vehicle, on a process and on an emulated Cortex-M4F: every step of
-# its.
+# its wheels has the core's bits for the torques of the drives.
 
 CYCLES = 1000
 

@@ -39,7 +39,7 @@ def run_derivatives(clock: Clock, seed: int) -> list[str]:
 
 
 # ---- The core's soft addition beside the addition of this machine's processor, on pairs of which half are any bits,
-# the.
+# the others those that rounding is sensitive to.
 
 SOFT_DOUBLE = ROOT / "core_c/optional/soft_double"
 PAIRS = 5_000_000  # between two looks at the clock

@@ -55,7 +55,7 @@ def digest(folder: Path) -> str:
 
 
 # ---- Made-up robots: do the 95 % intervals of `laconic identify` hold the true parameters in 93 to 97 % of all
-# cases?.
+# cases?
 
 TRIALS = 1000
 LEAST_HELD, MOST_HELD = 0.93, 0.97

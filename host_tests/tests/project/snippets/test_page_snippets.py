@@ -19,10 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click import Context
 from page_snippets import ALL, PAGES, SHELL, SHOWN, Snippet
 
 from laconic.base.paths import SCENE_DIR, SOURCE_DIR, build_dir
-from laconic.cli.main import run
+from laconic.cli.main import commands, run
 from laconic.robot.logs.column_map import read_map
 from laconic.scene.scene import scene_of
 from laconic.scene.table import Table, read_toml
@@ -173,6 +174,20 @@ def test_what_a_page_shows_does_what_the_page_says(page: Path, reader: Reader,
             assert snippet.language == "toml", f"{snippet.where}: nothing here runs {snippet.language}; mark it"
             read_tables(snippet)
         reader.printed = capsys.readouterr().out
+
+
+def test_pages_whose_snippets_run_at_night_name_commands_and_options_that_exist() -> None:
+    lines = [(snippet, line) for snippet in ALL if snippet.page.stem in SLOW and snippet.language in SHELL
+             for line in snippet.text.replace("\\\n", " ").splitlines()
+             if line.lstrip("$ ").startswith("laconic ")]
+    assert len(lines) > 60
+    for snippet, line in lines:
+        _, name, *words = line.lstrip("$ ").split("#")[0].split(";")[0].split("&")[0].split("|")[0].split()
+        command = commands.get_command(Context(commands), name)
+        assert command is not None, (snippet.where, line)
+        known = {option for each in command.params for option in (*each.opts, *each.secondary_opts)} | {"--help"}
+        options = {word.partition("=")[0] for word in words if word.startswith("--") and word != "--"}
+        assert options <= known, (snippet.where, line, options - known)
 
 
 def test_every_snippet_that_is_not_run_says_why_and_there_are_no_more_of_them() -> None:
