@@ -21,6 +21,7 @@ STEP_S = 1e-3   # of a plant that takes none
 OUTSIDE_M = 1e-6  # what is less is rounding
 ABOVE_MM = 0.5  # of a line: above it, but for rounding in a file
 NO_LOAD = 1e-9  # of the weight: rounding
+MAY_TIP = "it may tip"
 REMEDY = "give what else it stands on as [[vehicle.support]]; the run holds it level"
 
 
@@ -52,7 +53,7 @@ class Standing:
     def as_json(self) -> dict[str, Any]:
         """Machine-readable."""
         return {"wheel_load_N": list(self.wheel_N), "support_load_N": list(self.support_N),
-                "stands": not self.tips, "tips": self.tips or None}
+                "stands": not self.tips or self.tips.startswith(MAY_TIP), "tips": self.tips or None}
 
 
 def standing_of(scene: Scene) -> Standing:
@@ -92,7 +93,7 @@ def why_points_tip(points: np.ndarray, names: Sequence[str], centre: np.ndarray)
     if distance < -OUTSIDE_M:
         return ""
     if distance <= OUTSIDE_M:
-        return (f"it may tip: its centre of mass is above the line from {names[a]} to {names[b]}, the edge of what it "
+        return (f"{MAY_TIP}: its centre of mass is above the line from {names[a]} to {names[b]}, the edge of what it "
                 "stands on, so that points off this line carry nothing; check com_x_m and com_y_m; the run holds it "
                 "level")
     return (f"it tips: its centre of mass lies {1e3 * distance:.3g} mm outside what it stands on, beyond the line from "

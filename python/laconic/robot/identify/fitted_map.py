@@ -81,7 +81,7 @@ def _curve(before: list[list[float]] | None, own: OfLog) -> list[list[float]]:
 def _speed(table: dict[str, Any], own: OfLog) -> None:
     if not table:
         return
-    if own.speed_offset_m_per_s:
+    if own.speed_offset_m_per_s or "offset" in table:  # the gain is of the map's offset, too
         table["offset"] = own.speed_gain * table.get("offset", 0.0) + own.speed_offset_m_per_s
     if own.speed_gain != 1.0:
         table["scale"] = own.speed_gain * table.get("scale", 1.0)

@@ -165,6 +165,7 @@ def _quiet_errors(run: Run, path: np.ndarray, noise: Noise) -> np.ndarray:
     quiet, count = replace(run, pose=pose), 2 * half + 1
     error = stretch_errors(quiet, path)
     left = _noise_share(quiet, Noise(noise.place_m / count**0.5, noise.heading_rad / count**0.5), error)
+    left = np.minimum(left, 1.0 - 1.0 / len(error))  # so many stretches show no smaller share of other errors
     found: np.ndarray = error * np.sqrt((1.0 - left) / (1.0 - 1.0 / 3.0))
     return found
 

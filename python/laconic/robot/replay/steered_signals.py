@@ -212,7 +212,7 @@ def late(path: np.ndarray, time_s: np.ndarray, wanted_s: np.ndarray, lag_s: floa
     where the log holds its poses."""
     if lag_s == 0.0 and len(time_s) == len(wanted_s):
         return path
-    at = np.clip(wanted_s - lag_s, time_s[0] if held[0] else None, time_s[-1] if held[1] else None)
+    at = np.clip(wanted_s - lag_s, time_s[0] if held[0] else -np.inf, time_s[-1] if held[1] else np.inf)
     part = np.clip(np.searchsorted(time_s, at) - 1, 0, len(time_s) - 2)
     share = (at - time_s[part]) / (time_s[part + 1] - time_s[part])
     found: np.ndarray = path[part] + share[:, None] * (path[part + 1] - path[part])
