@@ -68,7 +68,8 @@ class _Rewriting:
     """Goes through a file line by line."""
 
     def __init__(self, text: str, after: Mapping[str, Any], comments: Comments):
-        self._lines, self._before = text.removeprefix("\ufeff").splitlines(), tomllib.loads(text.removeprefix("\ufeff"))
+        plain = text.removeprefix("\ufeff").replace("\r\n", "\n")
+        self._lines, self._before = plain.rstrip("\n").split("\n"), tomllib.loads(plain)
         self._after, self._comments = after, comments
         self._counts: dict[tuple[str, ...], int] = {}
         self._out: list[str] = []
