@@ -283,8 +283,10 @@ def test_the_scene_and_the_map_that_an_audit_of_a_steered_vehicle_writes_replay_
     scene.write_text(scene.read_text().replace("[[vehicle.wheel]]", "# counted from the front\n[[vehicle.wheel]]", 1)
                      .replace("[run]", "[run]  # a short one"))
     log, mapping = steered_log(tmp_path, kind, radius=1.03, base=1.05, gain=0.9, offset=0.02, ahead_m=0.3, lag_s=0.1)
+    mapping.write_bytes(f"# Räder\n{mapping.read_text()}".encode("cp1252"))  # as --map reads it
     audited(capsys, log, mapping, scene, "--export", str(fitted), "--map-out", str(mapped))
     text = fitted.read_text()
+    assert "# Räder\n" in mapped.read_text(encoding="utf-8")
     assert "# counted from the front\n" in text and "[run]  # a short one\n" in text
     assert "wheel_radius_m = 0.103" in text and "radius of the wheels, factor: 1.03" in text
     assert re.search(r"#   gain of the steering, factor: 0\.(9|89)", text) and "mass_kg" in text

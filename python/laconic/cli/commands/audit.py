@@ -51,10 +51,10 @@ def command(logs: tuple[Path, ...], scene: str, map_path: Path | None, out: Path
         found = audit(given, runs, advance)
     for path in exports:
         write_text(path, export(found, path))
-    if map_out is not None and map_path is not None:
-        write_text(map_out, fitted_map_text(found.study, named_map(map_path)))
     if out is not None:
         audit_page.draw(found, out / "audit.png")
         write_text(out / "audit.md", audit_page.as_text(found, "audit.png"))
         write_text(out / "audit.json", json.dumps(audit_page.as_numbers(found), indent=1) + "\n")
     click.echo(json.dumps(audit_page.as_numbers(found), indent=1) if json_wanted else audit_page.as_text(found))
+    if map_out is not None and map_path is not None:  # last, as it may refuse: the rest is written by then
+        write_text(map_out, fitted_map_text(found.study, named_map(map_path)))

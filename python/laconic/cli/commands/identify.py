@@ -93,14 +93,14 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, map_out: Path 
                          with_controller="controller" in names, advance=advance)
     if out is not None:
         write_text(out, fitted_text(study))
-    if map_out is not None and map_path is not None:
-        write_text(map_out, fitted_map_text(study, named_map(map_path)))
     if plot is not None:
         draw(study, plot)
     if json_wanted:
         click.echo(json.dumps(report.as_numbers(study), indent=1))
     else:
         click.echo(report.as_text(study), err=out is not None and is_stdout(out))
+    if map_out is not None and map_path is not None:  # last, as it may refuse: the rest is written by then
+        write_text(map_out, fitted_map_text(study, named_map(map_path)))
     if worse := failures(study):
         raise ResultFails(worse[0])
 

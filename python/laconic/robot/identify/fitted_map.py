@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from laconic.base.text_file import decoded
 from laconic.errors import BadInput
 from laconic.robot.identify.fitted_toml import interval_text
 from laconic.robot.identify.study import Study, fitted_scene
 from laconic.robot.replay.steered_signals import OfLog, curved, of_log
 from laconic.scene.scene_text import Comments, rewritten
-from laconic.scene.table import read_toml
+from laconic.scene.table import read_map_toml
 
 PLACES = {"gain": ("steering_angle", "scale"), "offset_rad": ("steering_angle", "offset"),
           "lag_s": ("steering_angle", "lag_s"), "rate_limit_rad_per_s": ("steering_angle", "rate_limit_rad_per_s"),
@@ -27,7 +28,7 @@ CURVE = ("steering_angle", "curve")
 
 def fitted_map_text(study: Study, map_path: Path) -> str:
     """A complete map: the one it came from, with the values found."""
-    data, comments = read_toml(map_path).plain(), dict[tuple[str, ...], str]()
+    data, comments = read_map_toml(map_path).plain(), dict[tuple[str, ...], str]()
     own = of_log(fitted_scene(study.scene, study.found).vehicle)
     _steering(data.get("steering_angle", {}), own)
     _speed(data.get("speed", {}), own)
@@ -42,7 +43,7 @@ def fitted_map_text(study: Study, map_path: Path) -> str:
     return "\n".join([f"# {map_path.name}, with what `laconic identify` found for {study.scene.path.name}.",
                       "# Intervals hold the true value with 95 %, if the rest of the model is right; they are of what",
                       "# is added to the map before it.", "",
-                      rewritten(map_path.read_text(encoding="utf-8-sig"), data, comments)])
+                      rewritten(decoded(map_path.read_bytes()).text, data, comments)])
 
 
 def _note(comments: Comments, place: tuple[str, ...], text: str) -> None:
