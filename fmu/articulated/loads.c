@@ -51,17 +51,18 @@ static void add_weight(weights *w, double newtons, place at) {
     w->y_Nm += newtons * at.y;
 }
 
+static place shifted(place at, const double by_m[2]) {
+    const place moved = {at.x + by_m[0], at.y + by_m[1]};
+    return moved;
+}
+
 static void find_weights(weights carried[BODIES], const posture *p, const double shift_m[2]) {
     const laconic_articulated_vehicle *v = p->vehicle;
     const laconic_vehicle *base = &v->base;
-    place own = point_of(p, 0, base->com_x_m, base->com_y_m);
-    place payload = point_of(p, 0, base->payload.x_m, base->payload.y_m);
-    own.x += shift_m[0];
-    own.y += shift_m[1];
-    payload.x += shift_m[0];
-    payload.y += shift_m[1];
-    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->mass_kg, own);
-    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->payload.mass_kg, payload);
+    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->mass_kg,
+               shifted(point_of(p, 0, base->com_x_m, base->com_y_m), shift_m));
+    add_weight(&carried[0], LACONIC_GRAVITY_M_PER_S2 * base->payload.mass_kg,
+               shifted(point_of(p, 0, base->payload.x_m, base->payload.y_m), shift_m));
     for (int32_t b = 1; b <= v->body_count; b++) {
         const laconic_body *body = &v->body[b - 1];
         add_weight(&carried[p->group[b]], LACONIC_GRAVITY_M_PER_S2 * body->mass_kg,

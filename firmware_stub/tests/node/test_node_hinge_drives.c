@@ -44,13 +44,18 @@ static void a_drive_turns_a_prescribed_axis_at_its_set_speed_within_its_limit(vo
     TEST_ASSERT_TRUE(off <= (laconic_real)0.01 && off >= (laconic_real)-1.01); /* counts are whole, downwards */
 }
 
-static void a_drive_brings_a_prescribed_axis_to_its_position(void) {
-    start_drives(&prescribed);
+/* A gear of −10 and 1,000 counts a turn: −500 counts are a twentieth of the axis's turn. */
+static void turn_to_its_position(void) {
     node.drives.drive[1].target.mode = LACONIC_DRIVE_POSITION;
     node.drives.drive[1].target.position_count = -500;
     bench_pass_ms(6000);
     const laconic_real off = motion().hinge_angle_rad[0] - (laconic_real)0.3141592654;
     TEST_ASSERT_TRUE(off < (laconic_real)1e-3 && off > (laconic_real)-1e-3);
+}
+
+static void a_drive_brings_a_prescribed_axis_to_its_position(void) {
+    start_drives(&prescribed);
+    turn_to_its_position();
     node.drives.drive[1].target.mode = LACONIC_DRIVE_CURRENT; /* of which such an axis has none */
     bench_pass_ms(20);
     rate_is(0);
@@ -169,11 +174,7 @@ static void drives_move_a_vehicle_that_slips_as_the_core_with_their_torques(void
 
 static void a_drive_turns_a_prescribed_axis_on_ground_with_friction(void) {
     start_slipping_drives(&prescribed);
-    node.drives.drive[1].target.mode = LACONIC_DRIVE_POSITION;
-    node.drives.drive[1].target.position_count = -500;
-    bench_pass_ms(6000);
-    const laconic_real off = motion().hinge_angle_rad[0] - (laconic_real)0.3141592654;
-    TEST_ASSERT_TRUE(off < (laconic_real)1e-3 && off > (laconic_real)-1e-3);
+    turn_to_its_position();
     const laconic_real missing = (laconic_real)node.drives.drive[1].encoder.count + 500;
     TEST_ASSERT_TRUE(missing >= -2 && missing <= 2);
 }

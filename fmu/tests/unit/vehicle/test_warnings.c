@@ -8,13 +8,17 @@
 void setUp(void) { begin_test(fmi2CoSimulation); }
 void tearDown(void) { end_test(); }
 
-static fmi2Component quiet(const fmi2CallbackFunctions *callbacks) {
-    fmi2FreeInstance(c);
-    c = fmi2Instantiate("one", fmi2CoSimulation, fmu_token_2, NULL, callbacks, fmi2False, fmi2True);
+static void begin_with_little_grip(void) {
     set("step_s", 0, 0.01);
     set("friction_coefficient", 0, 0.02);
     set("com_z_m", 0, 0.1);
     initialise();
+}
+
+static fmi2Component quiet(const fmi2CallbackFunctions *callbacks) {
+    fmi2FreeInstance(c);
+    c = fmi2Instantiate("one", fmi2CoSimulation, fmu_token_2, NULL, callbacks, fmi2False, fmi2True);
+    begin_with_little_grip();
     set("voltage_V", 1, 14);
     return c;
 }
@@ -99,18 +103,12 @@ static void slip_and_lift_are_told_once_in_a_run(void) {
 
 /* What is told of one run is not told of the next, in which nothing slips. */
 static void a_run_after_a_reset_has_its_own_warnings(void) {
-    set("step_s", 0, 0.01);
-    set("friction_coefficient", 0, 0.02);
-    set("com_z_m", 0, 0.1);
-    initialise();
+    begin_with_little_grip();
     set("voltage_V", 1, 14);
     OK(step(0, 0.02));
     TEST_ASSERT_TRUE(instance()->warnings_given != 0);
     OK(fmi2Reset(c));
-    set("step_s", 0, 0.01);
-    set("friction_coefficient", 0, 0.02);
-    set("com_z_m", 0, 0.1);
-    initialise();
+    begin_with_little_grip();
     log_clear();
     OK(step(0, 0.02));
     TEST_ASSERT_EQUAL_INT(0, lines);
@@ -124,10 +122,7 @@ static void warnings_are_told_also_where_logging_is_off(void) {
     static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
     fmi2FreeInstance(c);
     c = fmi2Instantiate("one", fmi2CoSimulation, fmu_token_2, NULL, &callbacks, fmi2False, fmi2False);
-    set("step_s", 0, 0.01);
-    set("friction_coefficient", 0, 0.02);
-    set("com_z_m", 0, 0.1);
-    initialise();
+    begin_with_little_grip();
     set("motor_gain_Nm_per_V", 0, 0.21); /* an event */
     OK(step(0, 0.01));
     TEST_ASSERT_EQUAL_INT(0, lines);
