@@ -586,7 +586,8 @@ typedef struct laconic_grip {
     laconic_grip_event first_lift, worst_lift;   /* worst: least normal load                         */
     bool wheel_slips[LACONIC_MAX_WHEELS];        /* at some instant                                  */
     laconic_sum slip_loss_J[LACONIC_MAX_WHEELS]; /* on ground with friction: of each wheel, by what the ends of the
-                                                    recorded steps show; their sum is that of the plant's book */
+                                                    recorded steps show; their sum is that of the plant's book
+                                                    if each step's end is recorded once, and no step was divided */
 } laconic_grip;
 
 /* Enters one instant. Slip is judged only where the contact has a friction coefficient. A margin or normal load below 0

@@ -57,7 +57,7 @@ typedef struct laconic_library_drive {
     int64_t count; /* of the encoder */
     double rest, speed_rad_per_s, current_A, integral_A;
     double torque_Nm;                              /* of the motor, at the wheel's axle        */
-    double axle_torque_Nm;                         /* which the plant got, with a brake's      */
+    double axle_torque_Nm;                         /* which the plant got; on rigid vehicles with a brake's */
     double wheel_speed_rad_per_s, wheel_angle_rad; /* of the plant                             */
 } laconic_library_drive;
 

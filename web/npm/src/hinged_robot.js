@@ -14,7 +14,7 @@ const ALLOWED = 1e-9; // of the size of a start: what rounding may change of it
 const HINGED_START = ["velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
 const WHEELS_STAND = "wheel_speed_rad_per_s"; // of a start with speeds of wheels
 const WITHOUT_NUMBERS = ["name", "parent", "hinge"];
-const PER_WHEEL = /^(?:wheel|along|lateral|brake|slip|contact|across|scrub)_/;
+const PER_WHEEL = /^(?:wheel|along|lateral|brake|slip|contact|scrub)_/;
 const FIRST_OF_SLIPPING = "slip_along_m_per_s";
 const REACTIONS = ["wheel_torque_Nm", "along_N", "lateral_N", "brake_Nm", "hinge_torque_Nm", "hinge_force_N"];
 
