@@ -49,6 +49,8 @@ def value_text(value: Any) -> str:
         return f'"{escaped}"'
     if isinstance(value, list):
         return f"[{', '.join(value_text(each) for each in value)}]"
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {value_text(each)}' for key, each in value.items())} }}"
     return repr(value) if isinstance(value, (int, float)) else str(value)
 
 
@@ -122,13 +124,17 @@ class _Rewriting:
             return []
         if before[key] == after[key]:
             return lines
-        return [_line(key, after[key], [self._comments.get((*location, key), ""), _comment(lines)])]
+        return [_line(key, after[key], [*self._said_of((*location, key)), _comment(lines)])]
 
     def _new(self, location: tuple[str, ...]) -> list[str]:
-        """Keys that the file does not have."""
+        """Keys that the file does not have; tables within a table in one line."""
         before, after = (_at(table, location) for table in (self._before, self._after))
-        return [_line(key, value, [self._comments.get((*location, key), "")]) for key, value in after.items()
-                if key not in before and not _is_table(value) and not _is_tables(value)]
+        return [_line(key, value, self._said_of((*location, key))) for key, value in after.items()
+                if key not in before and (location or not (_is_table(value) or _is_tables(value)))]
+
+    def _said_of(self, location: tuple[str, ...]) -> list[str]:
+        """The comments of a key, and of what is within it."""
+        return [text for at, text in self._comments.items() if at[:len(location)] == location]
 
 
 HEADER = re.compile(r"\s*\[(\[)?([A-Za-z0-9_. -]+)\]\]?\s*(?:#.*)?$")

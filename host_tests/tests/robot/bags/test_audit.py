@@ -315,7 +315,8 @@ def test_a_scene_with_other_values_keeps_its_comments_and_all_else(name):
 
 
 @pytest.mark.parametrize("text", [
-    "a.b = 1\nc = 2\n", "[x]\ny = {z = 1, w = 2}\n", "c = \"\"\"\n[a]\n\"\"\" # é\n[x]\n\"q r\" = 1\n"])
+    "a.b = 1\nc = 2\n", "# \u2028 and\x85\r\n[x]\r\ny = 2 # told\r\n",
+    "[x]\ny = {z = 1, w = 2}\n", "c = \"\"\"\n[a]\n\"\"\" # é\n[x]\n\"q r\" = 1\n"])
 def test_a_table_in_any_form_has_the_new_values(text):
     table = entries_of(text)
     table["c"] = [1.5, 2.5]
