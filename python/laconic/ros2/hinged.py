@@ -112,8 +112,7 @@ class HingedRobots:
             return
         each.margin_steps = each.steps
         try:
-            acceleration = each.plant.acceleration(each.row) if self._loads.height_m else (0.0, 0.0)
-            found = each.plant.reactions(each.row, self._loads.of(each.motion, acceleration))
+            found = each.plant.reactions(each.row, self._loads.under(each.plant, each.motion, each.row))
         except Refused:
             return  # a posture that has no reactions, which the next step refuses
         each.margin_N = min(each.margin_N, found.no_slip_margin_N)

@@ -176,7 +176,7 @@ class Rows(KeptRows):
         self._folds.take(motion.hinge_angle_rad, tick * self._inputs.step_s)
         reactions, loads = None, None
         if self._of_load:
-            loads = self._loads.of(motion, plant.acceleration(row)) if self._loads.height_m else self._loads.of(motion)
+            loads = self._loads.under(plant, motion, row)
         if self._of_ground or self._of_load:
             if loads is not None:
                 self.see_lifted(loads < -NO_LOAD * loads.sum(), tick * self._inputs.step_s)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.core.articulated import CARRIAGE, ArticulatedMotion
+from laconic.core.articulated import CARRIAGE, ArticulatedMotion, ArticulatedPlant
 from laconic.scene import Scene
 from laconic.scene.standing import NO_LOAD, Standing, why_points_tip
 
@@ -69,6 +69,10 @@ class Loads:
         frames = self._frames(motion)
         shift = -complex(*acceleration_m_per_s2) * frames[0][1] * (self.height_m / GRAVITY_M_PER_S2)
         return self._carried(frames, shift)[0]
+
+    def under(self, plant: ArticulatedPlant, motion: ArticulatedMotion, row: np.ndarray) -> np.ndarray:
+        """The load of each wheel [N] with the acceleration by the inputs of a row; at height 0 it shifts no load."""
+        return self.of(motion, plant.acceleration(row) if self.height_m else (0.0, 0.0))
 
     def standing(self, angles_rad: Sequence[float]) -> Standing:
         """How it stands with its hinges at these angles, and why it tips, or a trailer of it."""
