@@ -142,18 +142,21 @@ def against_clarabel(seed: int) -> tuple[float, float]:
     return distance, problem.cost(after.z, after.wheel_speed) - problem.cost(z, s)
 
 
-def test_a_conic_solver_finds_the_same_steps() -> None:
+def share_within(seeds: range, distance: float) -> float:
+    """The share of steps that agree. Elsewhere the core's step costs less: Clarabel's own accuracy ended there."""
     pytest.importorskip("clarabel")
-    assert max(against_clarabel(seed)[0] for seed in range(40)) <= 1e-7
+    found = [against_clarabel(seed) for seed in seeds]
+    assert all(apart <= distance or (apart <= 1e-4 and above < 0) for apart, above in found)
+    return sum(apart <= distance for apart, _ in found) / len(found)
+
+
+def test_a_conic_solver_finds_the_same_steps() -> None:
+    assert share_within(range(40), 1e-7) >= 0.95
 
 
 @pytest.mark.nightly
 def test_a_conic_solver_finds_a_thousand_of_the_same_steps() -> None:
-    """To 1e-7, or Clarabel's own accuracy: there its step costs more."""
-    pytest.importorskip("clarabel")
-    found = [against_clarabel(seed) for seed in range(5000, 6000)]
-    assert all(distance <= 1e-7 or (distance <= 1e-4 and above < 0) for distance, above in found)
-    assert sum(distance <= 1e-7 for distance, _ in found) >= 980
+    assert share_within(range(5000, 6000), 1e-7) >= 0.98
 
 
 # ------------------------------------------------------------------------------ energy, rest, limits
