@@ -81,11 +81,20 @@ another_build() {
         cmake --build "$folder" -j2 --target "${targets[@]}" >>"$folder.log" 2>&1 || { tail -40 "$folder.log"; return 1; }
 }
 
-# unity_tests FOLDER: the C tests of a build tree; in full only when one fails
+# unity_tests FOLDER OPTION…: the C tests of a build tree; in full only when one fails
 unity_tests() {
-    ctest --test-dir "$1" -L unity -j2 --output-on-failure --no-tests=error --output-junit tests.xml >"$1.tests.log" 2>&1 ||
-        { tail -60 "$1.tests.log"; return 1; }
+    ctest --test-dir "$1" -L unity -j2 --output-on-failure --no-tests=error --output-junit tests.xml "${@:2}" \
+        >"$1.tests.log" 2>&1 || { tail -60 "$1.tests.log"; return 1; }
     grep 'tests passed' "$1.tests.log"
+}
+
+# sanitizers OPTION…: the C tests under the sanitizers for addresses and undefined behaviour, which clang has; clang has
+# no warning about what ships either
+sanitizers() {
+    local options=(-DLACONIC_SANITIZE=address,undefined -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug)
+    command -v ld.lld >/dev/null && # takes half of the time for programs with sanitizers
+        options+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld)
+    another_build build-checked "laconic_unity_tests laconic_fmu_libraries laconic_node" "${options[@]}" && unity_tests build-checked "$@"
 }
 
 # two_at_a_time NAME FUNCTION NAME FUNCTION…: gates beside each other, in this order; the next begins when one ends
