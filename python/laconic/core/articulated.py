@@ -13,7 +13,7 @@ places of a wheel are in the frame of its body, whose origin is its hinge.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, fields
 from functools import cache
@@ -325,10 +325,10 @@ class ArticulatedPlant(OwnMemory):
         """One step along inputs that are linear from `start` to `end`, each given as for `run`."""
         self.follow(np.array([[self.vehicle.row_of(each) for each in (start, end)]]))
 
-    def follow(self, rows: np.ndarray, ramped: bool = True) -> None:
+    def follow(self, rows: np.ndarray, ramped: bool = True, before_each: Callable[[], None] = lambda: None) -> None:
         """One step for each of `rows`, shape (steps, 2, numbers of a row): inputs at its start and end, linear in
-        between; not `ramped`: rates and twists have their derivatives in the rows, for a cubic. Refused leaves the
-        state before the refused step."""
+        between; not `ramped`: rates and twists have their derivatives in the rows, for a cubic. `before_each`: is
+        called before each step. Refused leaves the state before the refused step."""
         lib, ffi, model, why = self.core.lib, self.core.ffi, self.vehicle.model, self.core.why()
         size = row_length(self.core)
         table = np.ascontiguousarray(rows, self.core.dtype)
@@ -338,6 +338,7 @@ class ArticulatedPlant(OwnMemory):
         pairs = ffi.from_buffer("laconic_articulated_input[]", table, require_writable=True)
         ramp, step, h = lib.laconic_articulated_ramp, lib.laconic_articulated_step, self.integrator.step_s
         for at in range(0, 2 * len(table), 2):
+            before_each()
             start, end = pairs + at, pairs + at + 1
             if ramped:
                 ramp(start, end, h)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -123,9 +123,10 @@ class Parts(Blocks):
         try:
             if not self._unknown:
                 self._plant.follow(pairs.reshape(-1, 2, table.shape[2]))
+                return
         except Refused:
-            self._unknown = -len(table)
-        self._unknown += len(table) if self._unknown else 0
+            pass
+        self._unknown += len(table)
 
     def take(self) -> None:
         """A row of what is known at this moment."""
@@ -347,11 +348,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
             count = min(CHUNK, inputs.steps - first)
             table = commands.rows(first, count)
             last, count = table[-1, 1] if len(table) else last, len(table)
-            for at in _stretches(first, count, every):
-                if at % every == 0:
-                    run.take(table[at - first, 0], at)
-                until = min(first + count, (at // every + 1) * every)
-                _follow(run, table[at - first : until - first], watched)
+            _follow(run, table, every, watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
@@ -368,20 +365,26 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
     return run
 
 
-def _stretches(first: int, count: int, every: int) -> list[int]:
-    """Where stretches of steps without a row in between begin."""
-    inside = range(-(-first // every) * every, first + count, every)
-    return sorted({first, *inside})
+def _follow(run: HingedRun, table: np.ndarray, every: int, watched: Sequence[tuple[int, Hinge]]) -> None:
+    """As follow_rows(), with a row before each `every`-th step; what estimates errors follows, too, up to each row and
+    as far as the run came."""
+    plant, first, followed = run.plant, run.plant.steps, 0
 
-
-def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
-    """As follow_rows(); what estimates errors follows, too, as far as the run came."""
-    plant, before_all = run.plant, run.plant.steps
-    try:
-        follow_rows(plant, table, watched)
-    finally:
+    def catch_up() -> None:
+        nonlocal followed
         if run.parts:
-            run.parts.follow(table[: plant.steps - before_all])
+            run.parts.follow(table[followed : plant.steps - first])
+            followed = plant.steps - first
+
+    def take() -> None:
+        if plant.steps % every == 0:
+            catch_up()
+            run.take(table[plant.steps - first, 0], plant.steps)
+
+    try:
+        follow_rows(plant, table, watched, take)
+    finally:
+        catch_up()
 
 
 def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
@@ -389,15 +392,16 @@ def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
     return [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
 
 
-def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]],
+                before_each: Callable[[], None] = lambda: None) -> None:
     """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
     if not watched:
-        plant.follow(table)
+        plant.follow(table, before_each=before_each)
         return
     before = plant.save()
     for each in table:
         before[0] = plant.c[0]
-        plant.follow(each[None])
+        plant.follow(each[None], before_each=before_each)
         angles = plant.hinge_angles()
         for at, hinge in watched:
             if not hinge.low_rad <= angles[at] <= hinge.high_rad:
