@@ -120,7 +120,7 @@ class SlippingCommands(Commands):
         twists = ideal[:, slot : slot + 3]
         if len(none := np.flatnonzero(~twists.any(axis=1))):
             raise self._no_direction(first + int(none[0]))
-        directions = np.array([self._steering.angles(twist) for twist in twists]).reshape(len(twists), -1)
+        directions = self._steering.angles(twists)
         for column, hinge in enumerate(self._coordinated):
             raw, turns = self._winding[hinge.name]
             changes = np.diff(directions[:, column], prepend=raw)
