@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -63,8 +63,7 @@ class Limb:
         return self.hinge.form != "caster"
 
 
-@dataclass(frozen=True)
-class BodyCircle:
+class BodyCircle(NamedTuple):
     """One body in a steady turn or in straight motion. `angle_rad` is None where nothing sets it."""
 
     angle_rad: float | None
