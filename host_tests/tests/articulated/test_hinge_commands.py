@@ -17,11 +17,13 @@ from hinge_scenes import CASTER, HINGED, held, scene_with, tables_of, two_wheels
 import laconic
 from laconic.base.paths import SCENE_DIR, SOURCE_DIR
 from laconic.cli.main import run
+from laconic.core.articulated_input import row_length
 from laconic.errors import BadInput
 from laconic.fmu.hinges import left_out
 from laconic.robot.bags.messages import store
 from laconic.scene.base import BaseTable, joint_names
 from laconic.scene.scene_text import lines_of
+from laconic.simulation.articulated import Parts
 
 REFERENCE = Path(__file__).parents[1] / "data" / "articulated_reference.json"
 DOES_NOT = "does not take vehicles with hinges"
@@ -243,6 +245,17 @@ def test_the_estimated_error_is_above_the_true_one_and_near_it(name: str, step_s
         rounding = 1e-11 * max(1.0, float(np.abs(run_.columns_of(signal)).max()))
         assert np.all(off <= 1.01 * estimated + rounding), kind
         assert off.max() >= estimated.max() / 30 - rounding, kind
+
+
+def test_errors_are_unknown_from_a_refused_part_on() -> None:
+    scene = laconic.read_scene("wheelchair")
+    plant = scene.articulated_vehicle(scene.core()).plant(step_s=0.01)
+    parts, rows = Parts(plant), np.zeros((3, 2, row_length(plant.core)))
+    for given in (rows, np.full_like(rows, np.nan), rows):
+        parts.follow(given)
+        parts.take()
+    assert np.isfinite(parts.table()[0]).all() and np.isinf(parts.table()[1:]).all()
+    assert parts.read().unknown == 6 and parts.read().now.place_m == np.inf
 
 
 def test_simulate_writes_columns_of_estimated_errors_and_prints_them(tmp_path: Path,

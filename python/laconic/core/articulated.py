@@ -13,9 +13,9 @@ places of a wheel are in the frame of its body, whose origin is its hinge.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from itertools import count, takewhile
 from typing import TYPE_CHECKING, Any
@@ -26,6 +26,7 @@ from laconic.core.articulated_input import by_signal, input_slots, row_length, r
 from laconic.core.binding import Core, load
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, items, number, one_of, shown, step_count
+from laconic.core.recording import Structs
 from laconic.core.spelling import with_radians
 from laconic.errors import BadInput, nearest_of
 
@@ -38,6 +39,8 @@ CARRIAGE = "carriage"
 """The name of body 0."""
 NOT_NUMBERS = ("name", "parent", "hinge")
 NOTHING: Mapping[str, str] = {}
+MOTION, REACTIONS = "laconic_articulated_motion", "laconic_articulated_reactions"
+OF_HINGES = ("hinge", "body", "friction_torque", "stop_torque")  # how members begin that have one item for each hinge
 ALWAYS = ("hinge", "hinge_x_m", "hinge_y_m", "mass_kg", "yaw_inertia_kgm2")
 NAME = re.compile(r"[^\W\d][\w-]*")  # of a body: it stands in brackets behind a signal
 
@@ -94,6 +97,25 @@ class ArticulatedReactions:
     balance: float               # what is left at body 0, over the largest force there: rounding
     largest_N: float             # the largest reaction of a wheel
     no_slip_margin_N: float      # the least of friction limit − reaction; 0 where no loads are given
+
+
+@cache
+def lengths_of(kind: type, wheels: int, hinges: int) -> Mapping[str, int | None]:
+    """How many items each member of a dataclass of outputs has; None: it is one number."""
+    return {each.name: None if each.type != "np.ndarray" else 2 if each.name == "velocity_m_per_s"
+            else hinges if each.name.startswith(OF_HINGES) else wheels for each in fields(kind)}
+
+
+def members_of(rows: Any, lengths: Mapping[str, int | None]) -> dict[str, Any]:
+    """Members of a struct, an item of `Structs.table`, or of several: views of arrays, cut to the items that there are.
+    """
+    each_row = (slice(None),) * rows.ndim
+    return {name: _number_or_column(rows[name]) if length is None else rows[name][(*each_row, slice(length))]
+            for name, length in lengths.items()}
+
+
+def _number_or_column(value: Any) -> Any:
+    return value.astype(float) if value.ndim else float(value)
 
 
 NEEDS_OF_HINGES = {"hinge_voltage_V": "a motor", "hinge_torque_Nm": 'a hinge that is "free" or "motor"',
@@ -169,6 +191,18 @@ class ArticulatedVehicle(OwnMemory):
     def body_count(self) -> int:
         """H: the bodies besides the carriage, each with one hinge."""
         return int(self.model.body_count)
+
+    def motion_of(self, rows: Any) -> ArticulatedMotion:
+        """A laconic_articulated_motion, an item of `Structs.table`; of many rows with arrays whose first axis they are.
+        """
+        return ArticulatedMotion(**members_of(rows, self._lengths(ArticulatedMotion)))
+
+    def reactions_of(self, rows: Any) -> ArticulatedReactions:
+        """The same of a laconic_articulated_reactions."""
+        return ArticulatedReactions(**members_of(rows, self._lengths(ArticulatedReactions)))
+
+    def _lengths(self, kind: type) -> Mapping[str, int | None]:
+        return lengths_of(kind, self.wheel_count, self.body_count)
 
     @property
     def is_coordinated(self) -> bool:
@@ -291,10 +325,10 @@ class ArticulatedPlant(OwnMemory):
         """One step along inputs that are linear from `start` to `end`, each given as for `run`."""
         self.follow(np.array([[self.vehicle.row_of(each) for each in (start, end)]]))
 
-    def follow(self, rows: np.ndarray, ramped: bool = True) -> None:
+    def follow(self, rows: np.ndarray, ramped: bool = True, before_each: Callable[[], None] = lambda: None) -> None:
         """One step for each of `rows`, shape (steps, 2, numbers of a row): inputs at its start and end, linear in
-        between; not `ramped`: rates and twists have their derivatives in the rows, for a cubic. Refused leaves the
-        state before the refused step."""
+        between; not `ramped`: rates and twists have their derivatives in the rows, for a cubic. `before_each`: is
+        called before each step. Refused leaves the state before the refused step."""
         lib, ffi, model, why = self.core.lib, self.core.ffi, self.vehicle.model, self.core.why()
         size = row_length(self.core)
         table = np.ascontiguousarray(rows, self.core.dtype)
@@ -304,6 +338,7 @@ class ArticulatedPlant(OwnMemory):
         pairs = ffi.from_buffer("laconic_articulated_input[]", table, require_writable=True)
         ramp, step, h = lib.laconic_articulated_ramp, lib.laconic_articulated_step, self.integrator.step_s
         for at in range(0, 2 * len(table), 2):
+            before_each()
             start, end = pairs + at, pairs + at + 1
             if ramped:
                 ramp(start, end, h)
@@ -341,33 +376,45 @@ class ArticulatedPlant(OwnMemory):
 
     def motion(self) -> ArticulatedMotion:
         """Velocities, pose, hinges, poses of bodies, wheels and energy of this moment."""
-        found = self.core.ffi.new("laconic_articulated_motion *")
+        found = Structs(self.core, MOTION, 1)
+        self.see_motion(found.c)
+        return self.vehicle.motion_of(found.table[0])
+
+    def see_motion(self, found: Any) -> None:
+        """The same into a laconic_articulated_motion, which `ArticulatedVehicle.motion_of` reads."""
         self.core.lib.laconic_articulated_motion_of(found, self.vehicle.model, self.c)
-        return ArticulatedMotion(**self._values(found, ArticulatedMotion))
+
+    def hinge_angles(self) -> list[float]:
+        """The angles of `motion` alone."""
+        found = self.core.ffi.new(f"{MOTION} *")
+        self.see_motion(found)
+        return [float(angle) for angle in self.core.ffi.unpack(found.hinge_angle_rad, self.vehicle.body_count)]
 
     def reactions(self, inputs: Any = None, normal_N: Sequence[float] | np.ndarray | None = None
                   ) -> ArticulatedReactions:
         """What ground and hinges must deliver at this moment with these inputs, given as for `run`.
 
         `normal_N`: a load for each wheel, for the margin alone. Refused where wheels or twist do not allow a motion."""
-        ffi, lib, why = self.core.ffi, self.core.lib, self.core.why()
         row = self.vehicle.row_of(inputs)
-        loads = ffi.NULL if normal_N is None else ffi.new(
+        loads = self.core.ffi.NULL if normal_N is None else self.core.ffi.new(
             "laconic_real[]", finite_numbers("normal_N", np.asarray(normal_N), self.vehicle.wheel_count) or [0.0])
-        found = ffi.new("laconic_articulated_reactions *")
-        self.core.check(lib.laconic_articulated_reactions_of(
-            found, self.vehicle.model, self.c, self._input(row), loads, why), why)
-        return ArticulatedReactions(**self._values(found, ArticulatedReactions))
+        found = Structs(self.core, REACTIONS, 1)
+        self.see_reactions(found.c, row, loads)
+        return self.vehicle.reactions_of(found.table[0])
+
+    def see_reactions(self, found: Any, row: np.ndarray, loads: Any = None) -> None:
+        """The same into a laconic_articulated_reactions, which `ArticulatedVehicle.reactions_of` reads."""
+        why = self.core.why()
+        self.core.check(self.core.lib.laconic_articulated_reactions_of(
+            found, self.vehicle.model, self.c, self._input(row), self.core.ffi.NULL if loads is None else loads, why),
+            why)
 
     def rates(self, inputs: Any = None) -> tuple[np.ndarray, np.ndarray]:
         """Twists of all bodies and their rates of change, each (H + 1, 3), with inputs as for `run`.
 
         A row has the velocity of the body's origin in its own axes and its yaw rate; the carriage's origin, in the
         first row, is its centre of mass."""
-        row = self.vehicle.row_of(inputs)
-        rates, why = self.core.ffi.new("laconic_articulated_rates *"), self.core.why()
-        self.core.check(self.core.lib.laconic_articulated_rates_of(
-            rates, self.vehicle.model, self.c, self._input(row), why), why)
+        rates = self._rates(inputs)
         bodies = range(self.vehicle.body_count + 1)
         twist, rate = (np.array([[each[b].x, each[b].y, each[b].z] for b in bodies])
                        for each in (rates.twist, rates.twist_rate))
@@ -375,21 +422,16 @@ class ArticulatedPlant(OwnMemory):
 
     def acceleration(self, inputs: Any = None) -> np.ndarray:
         """Acceleration of the centre of mass of body 0 in body axes, shape (2,) [m/s²], with inputs as for `run`."""
-        twist, rate = (each[0] for each in self.rates(inputs))
-        return np.array([rate[0] - twist[2] * twist[1], rate[1] + twist[2] * twist[0]])
+        rates = self._rates(inputs)
+        twist, rate = rates.twist[0], rates.twist_rate[0]
+        return np.array([rate.x - twist.z * twist.y, rate.y + twist.z * twist.x])
 
-    def _values(self, found: Any, kind: type) -> dict[str, Any]:
-        """The members of a struct: arrays cut to the wheels or hinges that there are."""
-        values: dict[str, Any] = {}
-        for name in kind.__dataclass_fields__:  # type: ignore[attr-defined]
-            value = getattr(found, name)
-            if isinstance(value, self.core.ffi.CData):
-                length = self.vehicle.wheel_count if name.startswith(("wheel", "along", "lateral", "brake")) else \
-                    2 if name == "velocity_m_per_s" else self.vehicle.body_count
-                shape = (-1, 2) if name == "hinge_force_N" else (-1,)
-                value = self.core.numbers(value, *shape)[:length]
-            values[name] = value if isinstance(value, np.ndarray) else float(value)
-        return values
+    def _rates(self, inputs: Any) -> Any:
+        row = self.vehicle.row_of(inputs)
+        rates, why = self.core.ffi.new("laconic_articulated_rates *"), self.core.why()
+        self.core.check(self.core.lib.laconic_articulated_rates_of(
+            rates, self.vehicle.model, self.c, self._input(row), why), why)
+        return rates
 
 
 def _body(core: Core, name: str, given: Any, more: Mapping[str, str]) -> dict[str, Any]:

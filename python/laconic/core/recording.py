@@ -1,7 +1,9 @@
-"""Rows of outputs that the core takes while it steps, and its watch on the ground (laconic_recorder)."""
+"""Rows of outputs that the core takes while it steps, and its watch on the ground (laconic_recorder); structs that it
+fills one by one."""
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -87,6 +89,30 @@ class Recorder(NotCopied):
     def grip(self, step_s: float) -> Grip | None:
         """What the watch has found in steps of `step_s`; None where there was no watch."""
         return Grip.of(self._grip, self._plant, step_s) if self._grip else None
+
+
+class Structs:
+    """So many of one C struct, zero at first: the core fills `c`, and `table` has their members by name."""
+
+    def __init__(self, core: Core, struct: str, count: int):
+        self.table = np.zeros(count, struct_dtype(core, struct))
+        self.c: Any = core.ffi.from_buffer(f"{struct}[]", self.table, require_writable=True)
+
+
+@cache
+def struct_dtype(core: Core, struct: str) -> np.dtype[Any]:
+    """A C struct as numpy reads it."""
+    return _dtype_of(core.ffi, core.ffi.typeof(struct))
+
+
+def _dtype_of(ffi: Any, kind: Any) -> np.dtype[Any]:
+    if kind.kind == "array":
+        return np.dtype((_dtype_of(ffi, kind.item), (kind.length,)))
+    if kind.kind == "struct":
+        fields = dict(kind.fields)
+        return np.dtype({"names": list(fields), "formats": [_dtype_of(ffi, field.type) for field in fields.values()],
+                         "offsets": [field.offset for field in fields.values()], "itemsize": ffi.sizeof(kind)})
+    return np.dtype(f"{'f' if kind.cname in ('double', 'float') else 'i'}{ffi.sizeof(kind)}")
 
 
 def is_whole(signal: str) -> bool:

@@ -18,11 +18,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.articulated import ArticulatedMotion, ArticulatedVehicle
+from laconic.core.articulated import ArticulatedMotion, ArticulatedVehicle, lengths_of, members_of
 from laconic.core.articulated_input import input_slots, row_length, row_of_hinges
 from laconic.core.binding import Core, load
 from laconic.core.copies import OwnMemory
 from laconic.core.given import finite_number, finite_numbers, flag, number, shown, step_count
+from laconic.core.recording import Structs
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ TARGET = "steering_angle_rad"
 PER_POINT = ("normal_N",)
 PER_AXIS = ("motor_current_A", "drive_limit")
 WHOLE = ("contact_state", "drive_limit")
+OUTPUTS = "laconic_tree_outputs"
+WATCHED = 256  # steps that a watch keeps before it judges them
 
 
 @cache
@@ -129,6 +132,16 @@ class SlippingVehicle(ArticulatedVehicle):
     def is_coordinated(self) -> bool:
         """No hinge is: a servo or a prescribed rate turns each."""
         return False
+
+    def outputs_of(self, rows: Any) -> SlippingOutputs:
+        """A laconic_tree_outputs, as `motion_of` of ArticulatedVehicle; states and limits are whole numbers."""
+        wheels, hinges = self.wheel_count, self.body_count
+        lengths = {**lengths_of(SlippingOutputs, wheels, hinges), **dict.fromkeys(PER_AXIS, wheels + hinges),
+                   **dict.fromkeys(PER_POINT, self.point_count)}
+        del lengths["motion"]
+        values = members_of(rows, lengths)
+        whole = {name: values[name].astype(int) for name in WHOLE}
+        return SlippingOutputs(motion=self.motion_of(rows["motion"]), **(values | whole))
 
     @property
     def point_count(self) -> int:
@@ -277,30 +290,13 @@ class SlippingPlant(OwnMemory):
 
     def outputs(self) -> SlippingOutputs:
         """Motion of this moment, and what the last step did: slips, forces, loads, drives and the energy book."""
-        found = self.core.ffi.new("laconic_tree_outputs *")
-        self.core.lib.laconic_tree_outputs_of(found, self.vehicle.model, self.c)
-        values = {name: self._value(name, getattr(found, name)) for name in SlippingOutputs.__dataclass_fields__
-                  if name != "motion"}
-        motion = {name: self._value(name, getattr(found.motion, name))
-                  for name in ArticulatedMotion.__dataclass_fields__}
-        return SlippingOutputs(motion=ArticulatedMotion(**motion), **values)
+        found = Structs(self.core, OUTPUTS, 1)
+        self.see_outputs(found.c)
+        return self.vehicle.outputs_of(found.table[0])
 
-    def _value(self, name: str, value: Any) -> Any:
-        if not isinstance(value, self.core.ffi.CData):
-            return float(value)
-        wheels, hinges = self.vehicle.wheel_count, self.vehicle.body_count
-        if name in PER_POINT:
-            length = self.vehicle.point_count
-        elif name in PER_AXIS:
-            length = wheels + hinges
-        elif name == "velocity_m_per_s":
-            length = 2
-        else:
-            hinged = name.startswith(("hinge", "friction_torque", "stop_torque", "body"))
-            length = hinges if hinged else wheels
-        if name in WHOLE:
-            return np.array([int(value[i]) for i in range(length)])
-        return self.core.numbers(value)[:length]
+    def see_outputs(self, found: Any, state: Any = None) -> None:
+        """The same into a laconic_tree_outputs, which `SlippingVehicle.outputs_of` reads; also of another state."""
+        self.core.lib.laconic_tree_outputs_of(found, self.vehicle.model, self.c if state is None else state)
 
 
 class SlipWatch:
@@ -311,16 +307,13 @@ class SlipWatch:
 
     def __init__(self, plant: SlippingPlant):
         core, wheels = plant.core, plant.vehicle.wheel_count
-        self._plant, self._seen = plant, core.ffi.new("laconic_tree_outputs *")
+        self._plant, self._seen, self._count = plant, Structs(core, OUTPUTS, WATCHED), 0
         self._middle = core.ffi.new("laconic_tree_state *")
         self._turn = 1 << 8 * core.ffi.sizeof("laconic_binary_angle")
-        self._along_N, self._lateral_N, self._scrub_Nm, self._along, self._across = (
-            np.frombuffer(core.ffi.buffer(getattr(self._seen, name)), core.dtype)[:wheels] for name in (
-                "along_N", "lateral_N", "scrub_Nm", "slip_along_m_per_s", "slip_across_m_per_s"))
-        self._state = np.frombuffer(core.ffi.buffer(self._seen.contact_state), np.int32)[:wheels]
         self._twists = np.frombuffer(core.ffi.buffer(plant.c.body), core.dtype).reshape(-1, 3)
         self._bodies = [int(plant.vehicle.model.wheel[i].body) for i in range(wheels)]
-        self.slipped, self.loss_J = np.zeros(wheels, bool), np.zeros(wheels)
+        self._yaw_rates = np.zeros((WATCHED, len(self._twists)), core.dtype)
+        self._slipped, self._loss_J = np.zeros(wheels, bool), np.zeros(wheels)
 
     def see(self) -> None:
         """The end of a step."""
@@ -329,7 +322,30 @@ class SlipWatch:
         for b in range(plant.vehicle.body_count):
             back = round(0.5 * plant.step_s * float(middle.z[3 + b]) / math.tau * self._turn)
             middle.hinge[b].fraction = (int(middle.hinge[b].fraction) - back) % self._turn
-        plant.core.lib.laconic_tree_outputs_of(self._seen, plant.vehicle.model, middle)
-        self.slipped |= self._state == 1
-        self.loss_J += plant.step_s * (self._lateral_N * self._across - self._along_N * self._along
-                                       - self._scrub_Nm * self._twists[self._bodies, 2])
+        plant.see_outputs(self._seen.c + self._count, middle)
+        self._yaw_rates[self._count] = self._twists[:, 2]
+        self._count += 1
+        if self._count == WATCHED:
+            self._judge()
+
+    def _judge(self) -> None:
+        """Adds up what was seen since the last time, step by step."""
+        found = self._plant.vehicle.outputs_of(self._seen.table[: self._count])
+        losses = self._plant.step_s * (found.lateral_N * found.slip_across_m_per_s
+                                       - found.along_N * found.slip_along_m_per_s
+                                       - found.scrub_Nm * self._yaw_rates[: self._count, self._bodies])
+        self._slipped |= (found.contact_state == 1).any(axis=0)
+        self._loss_J = np.cumsum(np.vstack([self._loss_J, losses]), axis=0)[-1]
+        self._count = 0
+
+    @property
+    def slipped(self) -> np.ndarray:
+        """Whether each wheel did, shape (N,)."""
+        self._judge()
+        return self._slipped
+
+    @property
+    def loss_J(self) -> np.ndarray:  # noqa: N802
+        """Of each wheel, shape (N,)."""
+        self._judge()
+        return self._loss_J

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol, TypeVar
+
+import numpy as np
 
 from laconic.core.given import number, one_of, shown
 from laconic.errors import BadInput
@@ -16,6 +18,7 @@ from laconic.errors import BadInput
 if TYPE_CHECKING:
     from laconic.core import Core
 
+Angles = TypeVar("Angles", float, np.ndarray)
 RAD, DEG = "_rad", "_deg"
 PLAIN, POLAR = ("x_m", "y_m"), ("distance_m", "bearing_rad", "bearing_deg")
 
@@ -63,8 +66,8 @@ def x_and_y(distance_m: float, bearing_rad: float) -> tuple[float, float]:
     return distance_m * math.cos(bearing_rad), distance_m * math.sin(bearing_rad)
 
 
-def wrapped(angle_rad: float) -> float:
-    """The same direction in (−π, π], with the same bits for every reader."""
+def wrapped(angle_rad: Angles) -> Angles:
+    """The same directions in (−π, π], with the same bits for every reader."""
     return -((math.pi - angle_rad) % (2.0 * math.pi) - math.pi)
 
 

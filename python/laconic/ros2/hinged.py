@@ -99,7 +99,7 @@ class HingedRobots:
         now = of_origin((self._centre.real, self._centre.imag), motion.velocity_m_per_s, motion.yaw_rate_rad_per_s)
         before, each.before = each.before or now, now
         self._watch(each)
-        each.folds.take(motion.hinge_angle_rad, each.steps * self.scene.run.step_s)
+        each.folds.take(motion.hinge_angle_rad[None], np.array([each.steps * self.scene.run.step_s]))
         angles, hinges = motion.wheel_angle_rad.astype(float), motion.hinge_angle_rad.astype(float)
         return Seen(x, y, motion.heading_rad, now, angles.tolist(), motion.wheel_speed_rad_per_s.tolist(),
                     np.concatenate([angles, hinges]), felt(before, now, period_s), None,

@@ -106,6 +106,10 @@ class InputsOnGrid:
         row = self._rows(np.array([tick]), np.array([0.0]))[0, 0]
         return dict(zip(self.signals, row.tolist(), strict=True))
 
+    def starts(self, ticks: np.ndarray) -> dict[str, np.ndarray]:
+        """The same at the starts of many steps, by signal."""
+        return dict(zip(self.signals, self._rows(ticks, np.array([0.0]))[:, 0].T, strict=True))
+
     def segments(self) -> Iterator[Segment]:
         """Stretches of constant inputs of a held scene."""
         ends = [*self.changes[1:], self.steps]

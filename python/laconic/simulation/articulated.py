@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +12,16 @@ from typing import Any
 import numpy as np
 
 from laconic.base.progress import Advance
-from laconic.core.articulated import ArticulatedMotion, ArticulatedPlant, ArticulatedReactions, ArticulatedVehicle
+from laconic.core.articulated import (
+    MOTION,
+    REACTIONS,
+    ArticulatedMotion,
+    ArticulatedPlant,
+    ArticulatedReactions,
+    ArticulatedVehicle,
+)
+from laconic.core.articulated_input import row_length
+from laconic.core.recording import Structs
 from laconic.core.spelling import wrapped
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
@@ -27,7 +36,7 @@ from laconic.scene.hinges import Hinge
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.standing import NO_LOAD
 from laconic.scene.table import Table
-from laconic.simulation.kept_rows import KeptRows, parts_of, refusal_of_run
+from laconic.simulation.kept_rows import ROOM, Blocks, KeptRows, parts_of, refusal_of_run
 from laconic.simulation.loads import Loads
 from laconic.simulation.slipping import USUAL as USUAL_SLIPPING
 from laconic.simulation.steering import Commands
@@ -92,7 +101,7 @@ class HingeErrors:
     unknown: int              # steps whose parts were refused: then the errors are infinite
 
 
-class Parts:
+class Parts(Blocks):
     """The same run in steps of a third, whose distance from it estimates its error.
 
     A third and no half, since `auto` divides steps by powers of two: halves could be the same steps again. What is off
@@ -100,8 +109,10 @@ class Parts:
     """
 
     def __init__(self, plant: ArticulatedPlant):
+        super().__init__(len(HINGE_ERRORS))
         self._plant, self._whole = plant.twin(plant.step_s / PARTS), plant
-        self._rows, self._unknown = list[list[float]](), 0
+        self._motions, self._of_whole = (Structs(plant.core, MOTION, ROOM) for _ in range(2))
+        self._unknown, self._is_unknown = 0, np.zeros(ROOM, bool)
 
     def follow(self, table: np.ndarray) -> None:
         """The parts of steps that the run itself takes along these inputs."""
@@ -112,36 +123,44 @@ class Parts:
         try:
             if not self._unknown:
                 self._plant.follow(pairs.reshape(-1, 2, table.shape[2]))
+                return
         except Refused:
-            self._unknown = -len(table)
-        self._unknown += len(table) if self._unknown else 0
+            pass
+        self._unknown += len(table)
 
     def take(self) -> None:
         """A row of what is known at this moment."""
-        self._rows.append(self._distance() if not self._unknown else [math.inf] * len(HINGE_ERRORS))
+        self._plant.see_motion(self._motions.c + self._count)
+        self._whole.see_motion(self._of_whole.c + self._count)
+        self._is_unknown[self._count] = bool(self._unknown)
+        self._count_row()
 
-    def _distance(self) -> list[float]:
-        a, b = self._whole.motion(), self._plant.motion()
-        found = {"velocity_m_per_s": _farthest([np.hypot(*(a.velocity_m_per_s - b.velocity_m_per_s))]),
-                 "place_m": math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)}
+    def _cut(self, count: int) -> np.ndarray:
+        a, b = (self._plant.vehicle.motion_of(each.table[:count]) for each in (self._of_whole, self._motions))
+        ways = np.subtract([b.x_m, b.y_m], [a.x_m, a.y_m]).tolist()
+        found = {"velocity_m_per_s": np.hypot(*(a.velocity_m_per_s - b.velocity_m_per_s).T),
+                 "place_m": np.array([*map(math.hypot, *ways)])}
         found |= {name: _farthest(np.subtract(getattr(a, name), getattr(b, name)))
                   for name in HINGE_ERRORS if name not in found}
-        return [OF_DISTANCE * found[name] for name in HINGE_ERRORS]
+        table = OF_DISTANCE * np.stack([found[name] for name in HINGE_ERRORS], axis=1, dtype=float)
+        table[self._is_unknown[:count]] = math.inf
+        return table
 
     def columns(self) -> dict[str, np.ndarray]:
         """By name of a further column of outputs."""
-        table = np.array(self._rows, float).reshape(len(self._rows), len(HINGE_ERRORS))
-        return {f"estimated_error_{name}": column for name, column in zip(HINGE_ERRORS, table.T.copy(), strict=True)}
+        return {f"estimated_error_{name}": column
+                for name, column in zip(HINGE_ERRORS, self.table().T.copy(), strict=True)}
 
     def read(self) -> HingeErrors:
         """The errors of the last row, and the largest of all rows."""
-        table = np.array(self._rows, float)
+        table = self.table()
         return HingeErrors(HingeErrorSizes(*table[-1].tolist()), HingeErrorSizes(*table.max(axis=0).tolist()),
                            self._unknown)
 
 
-def _farthest(differences: Any) -> float:
-    return float(np.max(np.abs(differences), initial=0.0))
+def _farthest(differences: np.ndarray) -> np.ndarray:
+    """The largest size in each row."""
+    return np.abs(differences).reshape(len(differences), -1).max(axis=1, initial=0.0)
 
 
 def trailers_of(scene: Scene, vehicle: ArticulatedVehicle) -> list[tuple[int, Hinge]]:
@@ -155,13 +174,15 @@ class Rows(KeptRows):
     """The outputs of a run on ideal ground."""
 
     def __init__(self, scene: Scene, vehicle: ArticulatedVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
-        super().__init__(kept, trailers_of(scene, vehicle))
-        self._inputs, self._loads = inputs, Loads(scene)
+        core, self._vehicle, self._loads = vehicle.core, vehicle, Loads(scene)
+        super().__init__(kept, trailers_of(scene, vehicle), inputs, row_length(core))
         names = {signal.partition("[")[0] for signal in kept}
-        self._of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
-        self._of_load = "no_slip_margin_N" in names or bool(scene.vehicle["friction_coefficient"])
-        self._accelerates = "acceleration_body_m_per_s2" in names
         self._friction = float(scene.vehicle["friction_coefficient"])
+        self._of_load = "no_slip_margin_N" in names or bool(self._friction)
+        self._accelerates = "acceleration_body_m_per_s2" in names or bool(self._of_load and self._loads.height_m)
+        of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
+        self._motions, self._accelerations = Structs(core, MOTION, ROOM), np.zeros((ROOM, 2))
+        self._reactions = Structs(core, REACTIONS, ROOM) if of_ground or self._of_load else None
         self.least_margin: tuple[float, float, int] | None = None  # N, s, number of the wheel
         self.slipping: set[int] = set()  # numbers of the wheels that would slip in some row
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
@@ -172,54 +193,74 @@ class Rows(KeptRows):
 
     def take(self, plant: ArticulatedPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts."""
-        motion, given = plant.motion(), self._inputs.held_at(tick) if self._follows_commands else {}
-        self._folds.take(motion.hinge_angle_rad, tick * self._inputs.step_s)
-        reactions, loads = None, None
-        if self._of_load:
-            loads = self._loads.under(plant, motion, row)
-        if self._of_ground or self._of_load:
-            if loads is not None:
-                self.see_lifted(loads < -NO_LOAD * loads.sum(), tick * self._inputs.step_s)
-            reactions = plant.reactions(row, loads)
-        if loads is not None and reactions:
-            self._judge(self._friction * loads, reactions, tick)
-        acceleration = plant.acceleration(row) if self._accelerates else np.zeros(2)
-        self._rows.append([self._value(each, motion, reactions, acceleration, row, given) for each in self._parts])
+        plant.see_motion(self._motions.c + self._count)
+        if self._accelerates:
+            self._accelerations[self._count] = plant.acceleration(row)
+        if self._reactions:
+            plant.see_reactions(self._reactions.c + self._count, row)
+        self._keep(row, tick)
 
-    def _judge(self, available_N: np.ndarray, reactions: ArticulatedReactions, tick: int) -> None:
+    def _cut(self, count: int) -> np.ndarray:
+        motion, time_s = self._vehicle.motion_of(self._motions.table[:count]), self._times(count)
+        self._folds.take(motion.hinge_angle_rad, time_s)
+        reactions, margin_N = None, np.zeros(count)
+        if self._reactions:
+            reactions = self._vehicle.reactions_of(self._reactions.table[:count])
+        if reactions and self._of_load:
+            loads = self._loads.of(motion, self._accelerations[:count])
+            self.see_lifted(loads < -NO_LOAD * loads.sum(axis=1, keepdims=True), time_s)
+            self._judge(self._friction * loads, reactions, time_s)
+            margin_N = self._margin_of(loads, reactions)
+        given = self._inputs.starts(self._ticks[:count]) if self._follows_commands else {}
+        table = np.empty((count, len(self.kept)))
+        for at, part in enumerate(self._parts):
+            table[:, at] = self._column(part, motion, reactions, margin_N, given)
+        return table
+
+    def _judge(self, available_N: np.ndarray, reactions: ArticulatedReactions, time_s: np.ndarray) -> None:
         """Notes wheels that would slip, and the least margin. A wheel that lifts slips only if it needs a reaction."""
-        needed_N, rounding_N = np.hypot(reactions.along_N, reactions.lateral_N), NO_LOAD * np.abs(available_N).sum()
+        needed_N = np.hypot(reactions.along_N, reactions.lateral_N)
+        rounding_N = NO_LOAD * np.abs(available_N).sum(axis=1, keepdims=True)
         margins = available_N - needed_N
         margins[(available_N < 0.0) & (needed_N <= rounding_N)] = 0.0
         if self._friction:
-            self.slipping |= set((np.flatnonzero(margins < -rounding_N) + 1).tolist())
-        if self.least_margin is None or margins.min() < self.least_margin[0]:
-            self.least_margin = (float(margins.min()), tick * self._inputs.step_s, int(np.argmin(margins)) + 1)
+            self.slipping |= set((np.flatnonzero((margins < -rounding_N).any(axis=0)) + 1).tolist())
+        first = int(np.argmin(margins.min(axis=1)))
+        if self.least_margin is None or margins[first].min() < self.least_margin[0]:
+            self.least_margin = (float(margins[first].min()), float(time_s[first]), int(np.argmin(margins[first])) + 1)
 
-    def _value(self, part: tuple[str, str, int], motion: ArticulatedMotion, reactions: ArticulatedReactions | None,
-               acceleration: np.ndarray, row: np.ndarray, given: dict[str, float]) -> float:
+    def _margin_of(self, loads: np.ndarray, reactions: ArticulatedReactions) -> np.ndarray:
+        """The no_slip_margin_N of each row, with the bits that the core gives where it knows the loads."""
+        real = self._vehicle.core.dtype.type
+        needed_N = np.sqrt(reactions.along_N * reactions.along_N + reactions.lateral_N * reactions.lateral_N)
+        return (real(self._friction) * loads.astype(real) - needed_N).min(axis=1).astype(float)
+
+    def _column(self, part: tuple[str, str, int], motion: ArticulatedMotion, reactions: ArticulatedReactions | None,
+                margin_N: np.ndarray, given: Mapping[str, np.ndarray]) -> Any:
+        """One signal of the last rows."""
         signal, name, item = part
+        count = len(motion.velocity_m_per_s)
         if name in OF_MOTION:
-            return float(getattr(motion, name)[item])
+            return getattr(motion, name)[:, item]
         if name == "velocity_body_m_per_s":
-            return float(motion.velocity_m_per_s[item])
+            return motion.velocity_m_per_s[:, item]
         if name == "acceleration_body_m_per_s2":
-            return float(acceleration[item])
+            return self._accelerations[:count, item]
         if reactions and name in OF_REACTIONS:
-            return float(getattr(reactions, OF_REACTIONS[name])[item])
+            return getattr(reactions, OF_REACTIONS[name])[:, item]
         if reactions and name in ("hinge_force_along_N", "hinge_force_across_N"):
-            return float(reactions.hinge_force_N[item, int(name == "hinge_force_across_N")])
-        if reactions and name == "no_slip_margin_N":
-            return reactions.no_slip_margin_N
+            return reactions.hinge_force_N[:, item, int(name == "hinge_force_across_N")]
+        if name == "no_slip_margin_N":
+            return margin_N
         if name in ("origin_x_m", "origin_y_m"):
-            return self._loads.origin_of(motion)[int(name == "origin_y_m")]
+            return self._loads.origins_of(motion)[:, int(name == "origin_y_m")]
         if name == "heading_wrapped_rad":
             return wrapped(motion.heading_rad)
         if name in ("x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "energy_J"):
-            return float(getattr(motion, name))
+            return getattr(motion, name)
         if name in (ANGLE, CURVATURE):
             return given.get(signal, 0.0)
-        return float(row[self._slots[signal]])
+        return self._given[:count, self._slots[signal]]
 
 
 def given_start(scene: Scene, vehicle: ArticulatedVehicle) -> dict[str, Any]:
@@ -307,11 +348,7 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
             count = min(CHUNK, inputs.steps - first)
             table = commands.rows(first, count)
             last, count = table[-1, 1] if len(table) else last, len(table)
-            for at in _stretches(first, count, every):
-                if at % every == 0:
-                    run.take(table[at - first, 0], at)
-                until = min(first + count, (at // every + 1) * every)
-                _follow(run, table[at - first : until - first], watched)
+            _follow(run, table, every, watched)
             moved(count)
             if commands.refused:
                 raise commands.refused
@@ -323,24 +360,31 @@ def run_with_hinges(scene: Scene, kept: Sequence[str], every: int, moved: Advanc
         if len(run.rows) <= -(-plant.steps // every):
             with suppress(Refused):  # of reactions at a posture that has none
                 run.take(commands.row_at(plant.steps, None), plant.steps)
+    run.rows.finish()
     run.seconds = time.perf_counter() - began
     return run
 
 
-def _stretches(first: int, count: int, every: int) -> list[int]:
-    """Where stretches of steps without a row in between begin."""
-    inside = range(-(-first // every) * every, first + count, every)
-    return sorted({first, *inside})
+def _follow(run: HingedRun, table: np.ndarray, every: int, watched: Sequence[tuple[int, Hinge]]) -> None:
+    """As follow_rows(), with a row before each `every`-th step; what estimates errors follows, too, up to each row and
+    as far as the run came."""
+    plant, first, followed = run.plant, run.plant.steps, 0
 
-
-def _follow(run: HingedRun, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
-    """As follow_rows(); what estimates errors follows, too, as far as the run came."""
-    plant, before_all = run.plant, run.plant.steps
-    try:
-        follow_rows(plant, table, watched)
-    finally:
+    def catch_up() -> None:
+        nonlocal followed
         if run.parts:
-            run.parts.follow(table[: plant.steps - before_all])
+            run.parts.follow(table[followed : plant.steps - first])
+            followed = plant.steps - first
+
+    def take() -> None:
+        if plant.steps % every == 0:
+            catch_up()
+            run.take(table[plant.steps - first, 0], plant.steps)
+
+    try:
+        follow_rows(plant, table, watched, take)
+    finally:
+        catch_up()
 
 
 def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
@@ -348,19 +392,21 @@ def watched_hinges(scene: Scene) -> list[tuple[int, Hinge]]:
     return [(at, hinge) for at, hinge in enumerate(scene.hinges) if hinge.has_stops and not hinge.is_commanded]
 
 
-def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]]) -> None:
+def follow_rows(plant: ArticulatedPlant, table: np.ndarray, watched: Sequence[tuple[int, Hinge]],
+                before_each: Callable[[], None] = lambda: None) -> None:
     """Steps along inputs; a free or motor hinge that comes to its stop ends the run."""
     if not watched:
-        plant.follow(table)
+        plant.follow(table, before_each=before_each)
         return
+    before = plant.save()
     for each in table:
-        before = plant.save()
-        plant.follow(each[None])
-        angles = plant.motion().hinge_angle_rad
+        before[0] = plant.c[0]
+        plant.follow(each[None], before_each=before_each)
+        angles = plant.hinge_angles()
         for at, hinge in watched:
             if not hinge.low_rad <= angles[at] <= hinge.high_rad:
                 plant.restore(before, plant.steps - 1)
                 limit = hinge.low_rad if angles[at] < hinge.low_rad else hinge.high_rad
                 raise Refused("hinge at stop", "hinge_angle_rad", at + 1, f"{hinge.place} ({hinge.name}): comes to its "
                               f"stop at {limit:.6g} rad, and the model has no stops that push back; steer or start so "
-                              "that it stays between them, or take the stop out", value=float(angles[at]), limit=limit)
+                              "that it stays between them, or take the stop out", value=angles[at], limit=limit)

@@ -20,8 +20,9 @@ from laconic.scene import Scene
 from laconic.scene.standing import NO_LOAD, Standing, why_points_tip
 
 GRAVITY_M_PER_S2 = 9.80665
-Frame = tuple[complex, complex]  # origin and direction in the world
-Weights = list[tuple[complex, float]]  # where each acts, and how much
+Places = Any  # one complex number, or an array of that of each row
+Frame = tuple[Places, Places]  # origin and direction in the world
+Weights = list[tuple[Places, Any]]  # where each acts, and how much
 
 
 def centre_of(vehicle: Mapping[str, Any]) -> complex:
@@ -59,15 +60,24 @@ class Loads:
 
     def origin_of(self, motion: ArticulatedMotion) -> tuple[float, float]:
         """The place of the body frame's origin."""
+        return self._origin_at(motion.x_m, motion.y_m, motion.heading_rad)
+
+    def origins_of(self, rows: ArticulatedMotion) -> np.ndarray:
+        """The same of many rows (`ArticulatedVehicle.motion_of`), shape (rows, 2), with the same bits."""
+        poses = np.stack([rows.x_m, rows.y_m, rows.heading_rad], axis=1)
+        return np.array([self._origin_at(*pose) for pose in poses.tolist()])
+
+    def _origin_at(self, x_m: float, y_m: float, heading_rad: float) -> tuple[float, float]:
         x, y = self._centre.real, self._centre.imag
-        cosine, sine = math.cos(motion.heading_rad), math.sin(motion.heading_rad)
-        return motion.x_m - cosine * x + sine * y, motion.y_m - sine * x - cosine * y
+        cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
+        return x_m - cosine * x + sine * y, y_m - sine * x - cosine * y
 
     def of(self, motion: ArticulatedMotion, acceleration_m_per_s2: Sequence[float] | np.ndarray = (0.0, 0.0)
            ) -> np.ndarray:
-        """The load of each wheel [N], shape (N,). The acceleration is that of body 0's centre of mass, in its axes."""
-        frames = self._frames(motion)
-        shift = -complex(*acceleration_m_per_s2) * frames[0][1] * (self.height_m / GRAVITY_M_PER_S2)
+        """The load of each wheel [N], shape (N,); of motions of many rows (rows, N). The acceleration is that of body
+        0's centre of mass, in its axes."""
+        frames, acceleration = self._frames(motion), np.asarray(acceleration_m_per_s2)
+        shift = -(acceleration[..., 0] + 1j * acceleration[..., 1]) * frames[0][1] * (self.height_m / GRAVITY_M_PER_S2)
         return self._carried(frames, shift)[0]
 
     def under(self, plant: ArticulatedPlant, motion: ArticulatedMotion, row: np.ndarray) -> np.ndarray:
@@ -93,10 +103,10 @@ class Loads:
         tips = why_points_tip(np.array([(p.real, p.imag) for p in points]), names, np.array([middle.real, middle.imag]))
         return Standing(tuple(wheels), tuple(supports), tips)
 
-    def _carried(self, frames: list[Frame], shift: complex = 0j) -> tuple[np.ndarray, np.ndarray, Weights]:
+    def _carried(self, frames: list[Frame], shift: Places = 0j) -> tuple[np.ndarray, np.ndarray, Weights]:
         """Loads of wheels and supports, and what the carriage with its supports and wheels carries. `shift`: of the
         carriage's own weight, in the world."""
-        loads, supports = np.zeros(len(self._wheels)), np.zeros(len(self._supports))
+        loads, supports = np.zeros((*np.shape(frames[0][0]), len(self._wheels))), np.zeros(len(self._supports))
         weights: dict[int, Weights] = {g: [] for g in self._of_group}
         for frame, g, (place, newtons) in zip(frames, self._group, self._weights, strict=True):
             weights[g].append((_at(frame, place), newtons))
@@ -107,42 +117,49 @@ class Loads:
             points = [_at(frames[b], place) for b, place in (self._wheels[i] for i in wheels)]
             points += [frames[g][0]] if g else [_at(frames[0], place) for place in self._supports]
             shares = _shares(points, weights[g])
-            loads[wheels] = shares[: len(wheels)]
+            loads[..., wheels] = shares[..., : len(wheels)]
             if not g:
-                supports = shares[len(wheels):]
+                supports = shares[..., len(wheels):]
             else:
-                weights[self._group[self._parents[g]]].append((frames[g][0], float(shares[-1])))
+                weights[self._group[self._parents[g]]].append((frames[g][0], shares[..., -1]))
         return loads, supports, weights[0]
 
     def _frames_at(self, angles_rad: Sequence[float]) -> list[Frame]:
         """Those of bodies whose carriage stands at the origin."""
-        found = [(0j, 1.0 + 0j)]
+        found: list[Frame] = [(0j, 1.0 + 0j)]
         for parent, hinge, angle in zip(self._parents[1:], self._hinges, angles_rad, strict=True):
             found.append((_at(found[parent], hinge), found[parent][1] * cmath.rect(1.0, angle)))
         return found
 
     def _frames(self, motion: ArticulatedMotion) -> list[Frame]:
         """That of each body."""
-        found = [(complex(*self.origin_of(motion)), cmath.rect(1.0, motion.heading_rad))]
-        return found + [(complex(x, y), cmath.rect(1.0, heading)) for x, y, heading in zip(
-            motion.body_x_m, motion.body_y_m, motion.body_heading_rad, strict=True)]
+        direction = np.exp(1j * motion.heading_rad)
+        bodies = (each.T.astype(float) for each in (motion.body_x_m, motion.body_y_m, motion.body_heading_rad))
+        return [(motion.x_m + 1j * motion.y_m - direction * self._centre, direction),
+                *((x + 1j * y, np.exp(1j * heading)) for x, y, heading in zip(*bodies, strict=True))]
 
 
 def _place(table: Mapping[str, Any]) -> complex:
     return complex(table["x_m"], table["y_m"])
 
 
-def _at(frame: Frame, place: complex) -> complex:
+def _at(frame: Frame, place: complex) -> Places:
     return frame[0] + frame[1] * place
 
 
-def _shares(points: list[complex], weights: Weights) -> np.ndarray:
-    """Loads of points that balance weights, with the least sum of squares."""
+def _shares(points: list[Places], weights: Weights) -> np.ndarray:
+    """Loads of points that balance weights, with the least sum of squares, in the last axis."""
     if not points:
         return np.zeros(0)
-    middle = sum(points) / len(points)
-    size = max(max(abs(point - middle) for point in points), 1e-9)
-    rows = np.array([[1.0, (p - middle).real / size, (p - middle).imag / size] for p in points]).T
-    total = sum((w * np.array([1.0, (p - middle).real / size, (p - middle).imag / size]) for p, w in weights),
-                np.zeros(3))
-    return np.asarray(np.linalg.lstsq(rows, total, rcond=1e-9)[0])
+    places = np.stack(points, axis=-1)
+    middle = places.mean(axis=-1, keepdims=True)
+    size = np.maximum(np.abs(places - middle).max(axis=-1, keepdims=True), 1e-9)
+    needed = _moments(np.stack([place for place, _ in weights], axis=-1) - middle, size)
+    newtons = np.stack([np.broadcast_to(each, np.shape(points[0])) for _, each in weights], axis=-1)
+    inverse = np.linalg.pinv(_moments(places - middle, size), rcond=1e-9)
+    return np.asarray((inverse @ (needed @ newtons[..., None]))[..., 0])
+
+
+def _moments(arms: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """What a unit force at each arm adds to the balance of forces and of moments, (…, 3, arms)."""
+    return np.stack([np.ones(arms.shape), arms.real / size, arms.imag / size], axis=-2)

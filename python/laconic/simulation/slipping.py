@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -18,13 +18,22 @@ import numpy as np
 from laconic.base.progress import Advance
 from laconic.core.articulated_input import input_slots
 from laconic.core.grip import ROLLED, losing_wheels
-from laconic.core.slipping import TARGET, SlippingOutputs, SlippingPlant, SlippingVehicle, SlipWatch, tree_row_length
+from laconic.core.recording import Structs
+from laconic.core.slipping import (
+    OUTPUTS,
+    TARGET,
+    SlippingOutputs,
+    SlippingPlant,
+    SlippingVehicle,
+    SlipWatch,
+    tree_row_length,
+)
 from laconic.core.spelling import wrapped
 from laconic.errors import Refused
 from laconic.scene import Scene
 from laconic.scene.hinge_signals import ANGLE, BOOK, CURVATURE, OF_SUPPLY, TWIST
 from laconic.scene.inputs import InputsOnGrid
-from laconic.simulation.kept_rows import KeptRows, parts_of, refusal_of_run
+from laconic.simulation.kept_rows import ROOM, KeptRows, parts_of, refusal_of_run
 from laconic.simulation.loads import Loads
 from laconic.simulation.steering import Commands
 
@@ -111,7 +120,7 @@ class SlippingCommands(Commands):
         twists = ideal[:, slot : slot + 3]
         if len(none := np.flatnonzero(~twists.any(axis=1))):
             raise self._no_direction(first + int(none[0]))
-        directions = np.array([self._steering.angles(twist) for twist in twists]).reshape(len(twists), -1)
+        directions = self._steering.angles(twists)
         for column, hinge in enumerate(self._coordinated):
             raw, turns = self._winding[hinge.name]
             changes = np.diff(directions[:, column], prepend=raw)
@@ -131,53 +140,56 @@ class SlippingRows(KeptRows):
 
     def __init__(self, scene: Scene, vehicle: SlippingVehicle, inputs: InputsOnGrid, kept: Sequence[str]):
         super().__init__(kept, [(at, hinge) for at, hinge in enumerate(scene.hinges)
-                                if hinge.kind == "free" and hinge.form != "caster"])
-        self._inputs = inputs
-        self._origin_of, wheels = Loads(scene).origin_of, scene.wheel_count
+                                if hinge.kind == "free" and hinge.form != "caster"], inputs,
+                         tree_row_length(vehicle.core))
+        self._vehicle, self._seen = vehicle, Structs(vehicle.core, OUTPUTS, ROOM)
         of_hinge = {hinge.name: at for at, hinge in enumerate(scene.hinges)}
-        self._values = [_reader(signal, of_hinge, wheels, vehicle) for signal in kept]
+        self._readers = [_reader(signal, of_hinge, vehicle, Loads(scene)) for signal in kept]
         self._of_commands = any(signal.partition("[")[0] in (ANGLE, CURVATURE, TWIST) for signal in kept)
         self.slipping: set[int] = set()  # numbers of the wheels that slipped in some step
-        self._place = {name: kept.index(name) for name in ("origin_x_m", "origin_y_m") if name in kept}
 
     def take(self, plant: SlippingPlant, row: np.ndarray, tick: int) -> None:
         """The outputs at the start of a step, in which `row` acts; forces are those of the step before."""
-        found = plant.outputs()
-        self._folds.take(found.motion.hinge_angle_rad, tick * self._inputs.step_s)
-        self.see_lifted(found.contact_state == LIFTED, tick * self._inputs.step_s)
-        given = self._inputs.held_at(tick) if self._of_commands else {}
-        values = [read(found, row, given) for read in self._values]
-        for name, at in self._place.items():
-            values[at] = self._origin_of(found.motion)[int(name == "origin_y_m")]
-        self._rows.append(values)
+        plant.see_outputs(self._seen.c + self._count)
+        self._keep(row, tick)
+
+    def _cut(self, count: int) -> np.ndarray:
+        found, time_s = self._vehicle.outputs_of(self._seen.table[:count]), self._times(count)
+        self._folds.take(found.motion.hinge_angle_rad, time_s)
+        self.see_lifted(found.contact_state == LIFTED, time_s)
+        given = self._inputs.starts(self._ticks[:count]) if self._of_commands else {}
+        table = np.empty((count, len(self.kept)))
+        for at, read in enumerate(self._readers):
+            table[:, at] = read(found, self._given[:count], given)
+        return table
 
 
-Reader = Callable[[SlippingOutputs, np.ndarray, dict[str, float]], float]
+Reader = Callable[[SlippingOutputs, np.ndarray, Mapping[str, np.ndarray]], Any]
 
 
-def _reader(signal: str, of_hinge: dict[str, int], wheels: int, vehicle: SlippingVehicle) -> Reader:
-    """What reads one signal."""
+def _reader(signal: str, of_hinge: dict[str, int], vehicle: SlippingVehicle, loads: Loads) -> Reader:
+    """What reads one signal of many rows."""
     name, item = parts_of(signal, of_hinge)
     if name in OF_MOTION:
-        return lambda found, row, given: float(getattr(found.motion, name)[item])
+        return lambda found, rows, given: getattr(found.motion, name)[:, item]
     if name in OF_OUTPUTS:
-        return lambda found, row, given: float(getattr(found, OF_OUTPUTS[name])[item])
+        return lambda found, rows, given: getattr(found, OF_OUTPUTS[name])[:, item]
     if name in BEHIND_WHEELS:
-        return lambda found, row, given: float(getattr(found, BEHIND_WHEELS[name])[wheels + item])
+        return lambda found, rows, given: getattr(found, BEHIND_WHEELS[name])[:, vehicle.wheel_count + item]
     if name == "velocity_body_m_per_s":
-        return lambda found, row, given: float(found.motion.velocity_m_per_s[item])
+        return lambda found, rows, given: found.motion.velocity_m_per_s[:, item]
     if name in (*BOOK, *OF_SUPPLY):
-        return lambda found, row, given: float(getattr(found, name))
+        return lambda found, rows, given: getattr(found, name)
     if name == "heading_wrapped_rad":
-        return lambda found, row, given: wrapped(found.motion.heading_rad)
+        return lambda found, rows, given: wrapped(found.motion.heading_rad)
     if name in ("x_m", "y_m", "heading_rad", "yaw_rate_rad_per_s", "energy_J"):
-        return lambda found, row, given: float(getattr(found.motion, name))
+        return lambda found, rows, given: getattr(found.motion, name)
     if name in ("origin_x_m", "origin_y_m"):
-        return lambda found, row, given: math.nan  # which the caller replaces
+        return lambda found, rows, given: loads.origins_of(found.motion)[:, int(name == "origin_y_m")]
     if name in (ANGLE, CURVATURE, TWIST):
-        return lambda found, row, given: given.get(signal, 0.0)
+        return lambda found, rows, given: given.get(signal, 0.0)
     slot = vehicle.slot(signal)
-    return lambda found, row, given: float(row[slot])
+    return lambda found, rows, given: rows[:, slot]
 
 
 def slipping_start(scene: Scene, angles: Sequence[float]) -> dict[str, Any]:
@@ -236,6 +248,7 @@ def run_slipping(scene: Scene, kept: Sequence[str], every: int, moved: Advance) 
             raise refused from None
     if refused is None or len(rows) <= -(-plant.steps // every):
         rows.take(plant, last, plant.steps)
+    rows.finish()
     body = scene.vehicle
     rows.slipping = set(losing_wheels(watch.slipped.tolist(), watch.loss_J.tolist(),
                                       ROLLED * body["mass_kg"] * body["wheel_radius_m"]))

@@ -216,8 +216,9 @@ class Commands:
         slot, h = self.vehicle.slot(TWIST), self.inputs.step_s
         if self._steer_freely(steering, rows[:, :, slot : slot + 3], h):
             return
-        for k in range(len(rows)):
-            target, now = steering.unit(rows[k, 1, slot : slot + 3]), self._twist
+        targets = steering.unit(rows[:, 1, slot : slot + 3])
+        for k, target in enumerate(targets):
+            now = self._twist
             if now is None or not np.any(target):
                 return  # which the core refuses
             reached = self._towards(steering, target, first + k, h)
@@ -228,10 +229,10 @@ class Commands:
 
     def _steer_freely(self, steering: _Steering, twists: np.ndarray, h: float) -> bool:
         """Takes all twists of some steps as they are commanded, if no limit holds one of them back."""
-        wanted = [steering.unit(twist) for twist in twists[:, 1]]
-        if self._twist is None or not all(map(np.any, wanted)):
+        wanted = steering.unit(twists[:, 1])
+        if self._twist is None or not wanted.any(axis=1).all():
             return False
-        way = np.array([self._twist, *wanted])
+        way = np.vstack([self._twist, wanted])
         turns = steering.turns(way[:-1], way[1:])
         now = np.array([self._angle[hinge.name] for hinge in steering.hinges])
         angles = np.cumsum(np.vstack([now, turns]), axis=0)[1:]
@@ -260,7 +261,7 @@ class Commands:
 
     def _take_angles(self, steering: _Steering, twist: np.ndarray) -> None:
         """Angles of the hinges, next to those that the file gives."""
-        for hinge, angle in zip(steering.hinges, steering.angles(twist), strict=True):
+        for hinge, angle in zip(steering.hinges, steering.angles(twist).tolist(), strict=True):
             turns = round((hinge.start_angle_rad - angle) / (2.0 * math.pi))
             self._angle[hinge.name] = angle + 2.0 * math.pi * turns
 
@@ -362,13 +363,13 @@ class _Steering:
         return twists
 
     def unit(self, twist: np.ndarray) -> np.ndarray:
-        """The twist of size 1, lengths over the vehicle's; 0 stays 0."""
-        largest = float(np.abs(twist).max())
-        if not 0.0 < largest < math.inf:
-            return np.zeros(3)
-        scaled = twist / largest
-        ahead, aside, yaw = (scaled * (1.0, 1.0, self._size_m)).tolist()
-        return np.asarray(scaled / math.sqrt(ahead * ahead + aside * aside + yaw * yaw))  # the same bits everywhere
+        """The twist of size 1, or each of many; lengths are over the vehicle's, and 0 stays 0."""
+        largest = np.abs(twist).max(axis=-1, keepdims=True)
+        usable = (largest > 0.0) & (largest < math.inf)
+        scaled = np.divide(twist, largest, out=np.zeros_like(twist), where=usable)
+        ahead, aside, yaw = np.split(scaled * (1.0, 1.0, self._size_m), 3, axis=-1)
+        size = np.sqrt(ahead * ahead + aside * aside + yaw * yaw)  # the same bits everywhere
+        return np.divide(scaled, size, out=scaled, where=usable)
 
     def _directions(self, twist: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Velocity at each hinge, ahead and to the left, for one twist or many."""
@@ -376,9 +377,9 @@ class _Steering:
         ahead, aside, yaw = (twist[..., [i]] for i in range(3))
         return ahead - yaw * y, aside + yaw * x
 
-    def angles(self, twist: np.ndarray) -> Sequence[float]:
-        """Angle of each hinge in [−π, π]."""
-        return [float(angle) for angle in angle_of(*self._directions(twist))]
+    def angles(self, twist: np.ndarray) -> np.ndarray:
+        """Angle of each hinge in [−π, π], for one twist or many."""
+        return angle_of(*self._directions(twist))
 
     def turns(self, now: np.ndarray, then: np.ndarray) -> np.ndarray:
         """How far each hinge turns from one twist to another."""

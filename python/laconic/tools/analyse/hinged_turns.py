@@ -11,7 +11,8 @@ import cmath
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,7 +36,7 @@ class Axle:
     place: complex
     direction: complex  # n, of the axle
 
-    @property
+    @cached_property
     def lever(self) -> float:
         """ℓ = n · (i P)."""
         return dot(self.direction, 1j * self.place)
@@ -51,7 +52,7 @@ class Limb:
     axles: tuple[Axle, ...]
     middle: complex            # of its wheels, else its hinge
 
-    @property
+    @cached_property
     def follows(self) -> bool:
         """Whether its wheels set its yaw rate."""
         return self.hinge.kind == "free" and bool(self.axles) and abs(self.axles[0].lever) > TINY
@@ -62,8 +63,7 @@ class Limb:
         return self.hinge.form != "caster"
 
 
-@dataclass(frozen=True)
-class BodyCircle:
+class BodyCircle(NamedTuple):
     """One body in a steady turn or in straight motion. `angle_rad` is None where nothing sets it."""
 
     angle_rad: float | None
@@ -131,10 +131,9 @@ class Tree:
             return BodyCircle(None, True, 0j, math.nan, None, None, f"{limb.hinge.name} lies in the turning centre")
         base = cmath.phase(q) - cmath.phase(axle.direction)
         part = math.acos(max(-1.0, min(1.0, -axle.lever * omega / abs(q))))
-        choices = [self._at(limb, base + sign * part, q, omega) for sign in (1.0, -1.0)]
-        if limb.follows:
-            return min(choices, key=lambda each: each.growth or 0.0)
-        return min(choices, key=lambda each: abs(each.angle_rad or 0.0))
+        if limb.follows:  # its angle grows by ±|q| sin(part)/ℓ
+            return self._at(limb, base - math.copysign(part, axle.lever), q, omega)
+        return self._at(limb, min(base + part, base - part, key=lambda angle: abs(wrapped(angle))), q, omega)
 
     def _at(self, limb: Limb, angle: float, q: complex, omega: float) -> BodyCircle:
         angle = wrapped(angle)
