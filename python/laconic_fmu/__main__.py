@@ -37,7 +37,7 @@ def make_tables(arguments: argparse.Namespace) -> None:
     generic = for_vehicle(description)
     if arguments.of_step:
         generic = of_step(generic)
-    generic = with_identifier(generic, arguments.identifier or identifier_in(text_3))
+    generic = with_identifier(generic, arguments.identifier or identifier_in(parsed.root))
     if generic is not parsed:
         text_3 = fmi3.describe(generic)
     out: Path = arguments.out

@@ -106,6 +106,12 @@ def build_description(sources: Sequence[str], identifier: str) -> str:
 
 def read_parts(path: Path) -> dict[str, bytes]:
     """All parts of an FMU."""
+    return dict(_parts_of(path, path.stat().st_mtime_ns))
+
+
+@lru_cache(maxsize=16)
+def _parts_of(path: Path, written_ns: int) -> Mapping[str, bytes]:
+    """The same. FMUs of many scenes are made from few archives, which are read once."""
     with zipfile.ZipFile(path) as archive:
         return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
 
@@ -171,10 +177,10 @@ def output_step(duration_s: float, step_s: float) -> float:
     return step_s * next((number for number in (*enough, *others) if count % number == 0), 1)
 
 
-def _describe(parts: Mapping[str, bytes], description: Description, variant: Variant) -> str:
+def _describe(old: ET.Element, description: Description, variant: Variant) -> str:
+    """The description as text; `old`: that of the generic FMU."""
     if variant.version == 3:
         return fmi3.describe_scalar(description) if variant.scalar else fmi3.describe(description)
-    old = ET.fromstring(parts["modelDescription.xml"])
     files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File") if variant.sources]
     return fmi2.describe(description, files)
 
@@ -187,10 +193,11 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
     """Writes the FMU of a scene: the generic one with the scene's start values, name, icon and page."""
     parts = {name: data for name, data in read_parts(generic).items()
              if variant.sources or not name.startswith("sources/")}
+    old = ET.fromstring(parts["modelDescription.xml"])
     given = parse(source.read_text(encoding="utf-8"))
     given = of_slipping(given) if variant.slipping else given
     description = for_vehicle(with_values(given, content.values, content.name, content.text))
-    description = with_identifier(description, identifier_in(parts["modelDescription.xml"].decode("utf-8")))
+    description = with_identifier(description, identifier_in(old))
     if variant.derivatives:
         description = of_step(description)
     experiment = description.root.find("DefaultExperiment")
@@ -201,7 +208,7 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
         parts |= shown(parts, description, variant.version)
     if not variant.enumerations:
         description = without_enumerations(description)
-    xml = _describe(parts, description, variant)
+    xml = _describe(old, description, variant)
     parts["modelDescription.xml"] = xml.encode("utf-8")
     if variant.version == 3:
         terminals = parts["terminalsAndIcons/terminalsAndIcons.xml"].decode("utf-8")

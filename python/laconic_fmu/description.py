@@ -6,7 +6,9 @@ import hashlib
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 
 ELEMENT_SHIFT = 10
@@ -112,9 +114,14 @@ def _numbers(text: str | None) -> tuple[int, ...] | None:
     return None if text is None else tuple(int(word) for word in text.split())
 
 
+@lru_cache(maxsize=8)
 def parse(text: str) -> Description:
-    """Reads a description; fails where the value references are not 0, 1, 2 … in order."""
+    """Reads a description; fails where the value references are not 0, 1, 2 … in order.
+
+    Its root is shared with later calls: whoever changes it copies it first.
+    """
     root = ET.fromstring(text)
+    ET.indent(root)  # joins the pieces of what stands between elements, which is copied far faster then
     elements = list(root.find("ModelVariables") or [])
     names = {int(e.get("valueReference", -1)): e.get("name", "") for e in elements}
     variables = tuple(_variable(element, names) for element in elements)
@@ -151,15 +158,15 @@ def with_values(description: Description, values: Mapping[str, Sequence[float]],
         elif isinstance(variable.size, str) and start:
             start = (start[0],) * sizes[variable.size]
         variables.append(replace(variable, start=start))
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     root.set("modelName", model_name)
     root.set("description", text)
     return Description(root, tuple(variables), description.unknowns)
 
 
-def identifier_in(text: str) -> str:
-    """The model identifier that a description's text has."""
-    return ET.fromstring(text).find("CoSimulation").get("modelIdentifier", "")  # type: ignore[union-attr]
+def identifier_in(root: ET.Element) -> str:
+    """The model identifier that a description has."""
+    return root.find("CoSimulation").get("modelIdentifier", "")  # type: ignore[union-attr]
 
 
 def with_identifier(description: Description, identifier: str) -> Description:
@@ -167,7 +174,7 @@ def with_identifier(description: Description, identifier: str) -> Description:
     interfaces = ("ModelExchange", "CoSimulation")
     if all(each.get("modelIdentifier") == identifier for tag in interfaces for each in description.root.findall(tag)):
         return description
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     for each in (found for tag in interfaces for found in root.findall(tag)):
         each.set("modelIdentifier", identifier)
     return replace(description, root=root)

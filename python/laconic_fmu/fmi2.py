@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from copy import deepcopy
 
 from .description import Description, element_reference, with_token
 from .scalars import Scalar, ScalarUnknown, scalars, unknowns
@@ -94,7 +95,7 @@ def describe(description: Description, source_files: Sequence[str] = ()) -> str:
         if tag == "TypeDefinitions":
             _types(ET.SubElement(root, tag), part)
         else:
-            root.append(ET.fromstring(ET.tostring(part)))
+            root.append(deepcopy(part))
     # FMI 2.0 does not require the time as a variable, and FMI Library, which several importers use, fails on it
     everything = [scalar for scalar in scalars(description) if scalar.variable.causality != "independent"]
     index = {scalar.reference: number for number, scalar in enumerate(everything, start=1)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from copy import deepcopy
 
 from .description import Description, Variable, element_reference, with_token
 from .scalars import Scalar, scalars, unknowns
@@ -17,7 +18,7 @@ def _text(root: ET.Element) -> str:
 
 def describe(description: Description) -> str:
     """With arrays, as the source has them."""
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     starts = {variable.name: variable.start for variable in description.variables}
     for element in root.find("ModelVariables") or []:
         if starts[element.get("name", "")]:
@@ -39,7 +40,7 @@ def _attributes(variable: Variable, scalar: Scalar) -> dict[str, str]:
 
 def describe_scalar(description: Description) -> str:
     """Without arrays, for importers that handle them badly."""
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     for tag in ("ModelVariables", "ModelStructure"):
         part = root.find(tag)
         assert part is not None

@@ -6,7 +6,7 @@ ideal ground keeps the variables and states of the ideal model.
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
+from copy import deepcopy
 from dataclasses import replace
 
 from .description import Description
@@ -67,7 +67,7 @@ def for_vehicle(description: Description) -> Description:
 
 def _without_derivatives(description: Description) -> Description:
     """Partial derivatives and derivatives of outputs are those of the ideal model only."""
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     for tag in ("ModelExchange", "CoSimulation"):
         for interface in root.findall(tag):
             for name in ("providesDirectionalDerivatives", "providesAdjointDerivatives", "maxOutputDerivativeOrder"):

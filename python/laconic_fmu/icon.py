@@ -43,11 +43,14 @@ def svg(shapes: Sequence[Shape], size: int, title: str) -> str:
             f"  <title>{escaped}</title>\n{polygons}</svg>\n")
 
 
-def _span(points: Sequence[Point], y: float) -> tuple[float, float] | None:
-    """Where a horizontal line enters and leaves a convex polygon."""
-    found = [x0 + (y - y0) * (x1 - x0) / (y1 - y0) for (x0, y0), (x1, y1) in pairwise((*points, points[0]))
-             if (y0 <= y) != (y1 <= y)]
-    return (min(found), max(found)) if found else None
+def _spans(points: Sequence[Point]) -> dict[int, tuple[float, float]]:
+    """By the number of each line that crosses a convex polygon: where the line enters and leaves."""
+    found: dict[int, list[float]] = {}
+    for (x0, y0), (x1, y1) in pairwise((*points, points[0])):
+        for line in range(ceil(LINES * min(y0, y1) - 0.5), ceil(LINES * max(y0, y1) - 0.5)):
+            y = (line + 0.5) / LINES
+            found.setdefault(line, []).append(x0 + (y - y0) * (x1 - x0) / (y1 - y0))
+    return {line: (min(ends), max(ends)) for line, ends in found.items()}
 
 
 def _blend(row: bytearray, k: int, colour: Colour, share: float) -> None:
@@ -69,11 +72,11 @@ def _paint_row(row: bytearray, spans: Sequence[tuple[float, float]], colour: Col
 
 
 def _paint(pixels: list[bytearray], shape: Shape) -> None:
-    heights = [y for _, y in shape.points]
-    for y in range(max(0, int(min(heights))), min(len(pixels), int(max(heights)) + 1)):
-        spans = [span for line in range(LINES) if (span := _span(shape.points, y + (line + 0.5) / LINES))]
-        if spans:
-            _paint_row(pixels[y], spans, shape.colour)
+    spans = _spans(shape.points)
+    for y in sorted({line // LINES for line in spans}):
+        if 0 <= y < len(pixels):
+            _paint_row(pixels[y], [spans[line] for line in range(LINES * y, LINES * (y + 1)) if line in spans],
+                       shape.colour)
 
 
 def _chunk(kind: bytes, data: bytes) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from dataclasses import replace
 
 from .description import Description, Unknown, Variable, as_double
@@ -27,14 +28,14 @@ def reduced(description: Description, kept: Callable[[Variable], bool],
     left = {v.reference for v in variables}
     unknowns = tuple(_depending(description, u, names[u.reference], depends or {})
                      for u in description.unknowns if u.reference in left)
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     _shorten(root, {v.name for v in variables}, unknowns)
     return replace(description, root=root, variables=variables, unknowns=unknowns)
 
 
 def without_model_exchange(description: Description) -> Description:
     """The description for Co-Simulation alone."""
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     for interface in root.findall("ModelExchange"):
         root.remove(interface)
     return replace(description, root=root)

@@ -5,7 +5,7 @@ Descriptions for importers that know no enumerations: whole numbers, with what e
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
+from copy import deepcopy
 from dataclasses import dataclass, replace
 
 from .description import ELEMENTWISE, Description, Variable, element_reference
@@ -102,7 +102,7 @@ def _plain(description: Description, variable: Variable) -> Variable:
 def without_enumerations(description: Description) -> Description:
     """The same description with integers instead of enumerations."""
     variables = tuple(_plain(description, variable) for variable in description.variables)
-    root = ET.fromstring(ET.tostring(description.root))
+    root = deepcopy(description.root)
     types = root.find("TypeDefinitions")
     for kind in list(types if types is not None else ()):
         if kind.tag == "EnumerationType" and types is not None:

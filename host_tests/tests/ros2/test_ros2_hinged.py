@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,12 @@ CARS = ("f1tenth", "tugger_train", "tricycle_agv", "wheel_loader")
 ACKERMANN, JOINTS = "ackermann_msgs/msg/AckermannDriveStamped", "sensor_msgs/msg/JointState"
 
 
+def by_day(*names: str, of: Sequence[str] = HINGED) -> pytest.MarkDecorator:
+    """These scenes in every run, the others at night."""
+    return pytest.mark.parametrize("name", [name if name in names else pytest.param(name, marks=pytest.mark.nightly)
+                                            for name in of])
+
+
 def hinged_base(scene: Any, robots: int = 1) -> HingedBase:
     found = base_of(read_scene(scene) if isinstance(scene, str) else scene, robots)
     assert isinstance(found, HingedBase)
@@ -61,7 +68,7 @@ def test_every_scene_with_hinges_is_driven_here() -> None:
     assert sorted(COMMANDS) == HINGED
 
 
-@pytest.mark.parametrize("name", HINGED)
+@by_day("f1tenth", "frc_swerve_mk4i", "mir_like", "tugger_train")
 def test_a_vehicle_with_hinges_reaches_the_commanded_velocity(name: str) -> None:
     base = hinged_base(name)
     assert driven(base, 3.0, *COMMANDS[name]) == []
@@ -79,7 +86,7 @@ def test_the_built_in_car_starts_and_stops_within_the_grip_of_its_wheels(speed_m
     assert "wheels would slip: the ground had to hold" in without.motion.grip(0)
 
 
-@pytest.mark.parametrize("name", HINGED)
+@by_day("f1tenth", "frc_swerve_mk4i", "tricycle_agv", "wheelchair")
 def test_odometry_of_wheels_and_steering_is_the_motion(name: str) -> None:
     base = hinged_base(name)
     start = base.look()[0]
@@ -251,7 +258,7 @@ def test_a_car_steers_while_it_stands() -> None:
         assert (seen.x_m, seen.y_m) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-@pytest.mark.parametrize("name", CARS)
+@by_day("f1tenth", "wheel_loader", of=CARS)
 def test_a_steering_angle_is_that_of_a_wheel_on_the_middle_line(name: str) -> None:
     base = hinged_base(name)
     base_m = base.believed.wheelbase_m
@@ -336,7 +343,8 @@ def test_joint_states_and_transforms_show_the_hinges() -> None:
         assert links[2].transform.translation.x == -1.8
 
 
-@pytest.mark.parametrize("name", ["f1tenth", "tugger_train", "tricycle_agv", "frc_swerve_mk4i", "wheelchair"])
+@by_day("f1tenth", "tugger_train", "frc_swerve_mk4i",
+        of=("f1tenth", "tugger_train", "tricycle_agv", "frc_swerve_mk4i", "wheelchair"))
 def test_a_recorded_run_with_hinges_has_the_bits_of_simulate(name: str, tmp_path: Path) -> None:
     path = tmp_path / "recorded.toml"
     with rig_of(name, record=path) as rig:

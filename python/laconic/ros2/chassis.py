@@ -95,6 +95,7 @@ class Chassis:
         self.steered = [found for at in range(len(bodies))
                         if (found := self._steered(scene, at, rate_limit_rad_per_s, is_fixed, axle)) is not None]
         sliding = self.rows([0.0] * len(bodies))[1]
+        self._inverted: tuple[bytes | None, np.ndarray] = None, np.zeros(0)  # rows, and their inverse
         self._of_carriage = sliding[self.of_wheel[self._fixed] == 0, :3]
         self.axle_x_m = self._axle(wheels, is_fixed)
 
@@ -153,10 +154,16 @@ class Chassis:
             scaled = along * self._scale
             return np.outer(along, scaled * self._scale) / float(scaled @ scaled), np.zeros((3, sliding.shape[1] - 3))
         side = sliding[self._known_fixed]
-        inverse = np.linalg.pinv(side[:, :3] / self._scale, rcond=1e-9)
+        inverse = self._inverse(side[:, :3] / self._scale)
         caused = -(inverse @ side[:, 3:]) / self._scale[:, None]
         keeps = np.eye(3) - inverse @ (side[:, :3] / self._scale)
         return keeps * self._scale / self._scale[:, None], caused
+
+    def _inverse(self, rows: np.ndarray) -> np.ndarray:
+        """The pseudo-inverse; wheels that do not turn ask for the same again and again."""
+        if (key := rows.tobytes()) != self._inverted[0]:
+            self._inverted = key, np.linalg.pinv(rows, rcond=1e-9)
+        return self._inverted[1]
 
     def travelled(self, before: np.ndarray, after: np.ndarray, wheel_turns: np.ndarray, measured: np.ndarray
                   ) -> tuple[float, float, float]:
@@ -200,8 +207,9 @@ def _projected(direction: np.ndarray, places: np.ndarray, arms: np.ndarray) -> n
     """Velocity of points along a direction, for a unit of each number of the twist and each hinge rate."""
     found = np.empty((len(places), 3 + arms.shape[1]))
     found[:, 0], found[:, 1] = direction.real, direction.imag
-    found[:, 2] = (np.conj(direction) * 1j * places).real
-    found[:, 3:] = (np.conj(direction)[:, None] * 1j * arms).real
+    quarter = np.conj(direction) * 1j
+    found[:, 2] = (quarter * places).real
+    found[:, 3:] = (quarter[:, None] * arms).real
     return found
 
 
@@ -256,7 +264,8 @@ class Steering:
         mine = angles[[each.at for each in self._coordinated]]
         goal = self.clear(self.goal)
         targets = [self._via(unit(sign * goal, self._scale)) for sign in (1.0, -1.0)]
-        turns = [self._turns(self.twist, each) for each in targets]
+        back = np.conj(self._velocities(self.twist))
+        turns = [self._turns(back, each) for each in targets]
         ways = sorted(range(2), key=lambda k: (bool(self._beyond(mine + turns[k])), float(np.abs(turns[k]).max())))
         target, turn = targets[ways[0]], turns[ways[0]]
         rates = SHARE * self.step_s * np.minimum(self._rates, rate_limit)
@@ -268,7 +277,7 @@ class Steering:
         low, high = 0.0, 1.0
         for _ in range(PARTS_OF_TURN):
             middle = 0.5 * (low + high)
-            turn = self._turns(self.twist, self.twist + middle * (target - self.twist))
+            turn = self._turns(back, self.twist + middle * (target - self.twist))
             is_far = (np.abs(turn) > rates).any() or self._beyond(mine + turn)
             low, high = (low, middle) if is_far else (middle, high)
         if low:
@@ -276,14 +285,16 @@ class Steering:
 
     def clear(self, twist: np.ndarray) -> np.ndarray:
         """The twist, or one beside it, about whose centre every steered wheel can point."""
+        if not len(self._poles):
+            return twist
         made = unit(twist, self._scale) * self._scale
         for pole in self._poles:
             along = float(made @ pole)
             if along > math.cos(CLEAR_RAD):
                 aside = made - along * pole
-                if np.linalg.norm(aside) < 1e-9:
-                    aside = np.cross(pole, [1.0, 0.0, 0.0] if abs(pole[0]) < 0.9 else [0.0, 1.0, 0.0])
-                made = math.cos(CLEAR_RAD) * pole + math.sin(CLEAR_RAD) * aside / np.linalg.norm(aside)
+                if _size(aside) < 1e-9:
+                    aside = _cross(pole, np.array([1.0, 0.0, 0.0] if abs(pole[0]) < 0.9 else [0.0, 1.0, 0.0]))
+                made = math.cos(CLEAR_RAD) * pole + math.sin(CLEAR_RAD) * aside / _size(aside)
                 return np.asarray(made / self._scale)
         return twist
 
@@ -291,20 +302,22 @@ class Steering:
         """The target, or where to go first, so that on the way no turning centre lies in a steered wheel.
 
         Twists of one size are points on a sphere, and those that leave a wheel without a direction its poles."""
+        if not len(self._poles):
+            return target
         now, goal = self.twist * self._scale, target * self._scale
-        axis = np.cross(now, goal)
-        size = float(np.linalg.norm(axis))
-        if size < 1e-9 or not len(self._poles):
+        axis = _cross(now, goal)
+        size = _size(axis)
+        if size < 1e-9:
             return target
         axis /= size
-        ahead, first, found = np.cross(axis, now), math.atan2(size, float(now @ goal)), target
+        ahead, first, found = _cross(axis, now), math.atan2(size, float(now @ goal)), target
         for pole in self._poles:
             off = float(axis @ pole)
             wide = min(AROUND_RAD, 0.5 * math.acos(min(max(float(goal @ pole), -1.0), 1.0)))
             along = math.atan2(float(pole @ ahead), float(pole @ now))
             if abs(off) < wide and 0.0 < along < first:
                 aside = math.copysign(1.0, -off) * (axis - off * pole)
-                aside /= np.linalg.norm(aside)
+                aside /= _size(aside)
                 first = along
                 found = (math.cos(1.2 * wide) * pole + math.sin(1.2 * wide) * aside) / self._scale
         return found
@@ -316,8 +329,10 @@ class Steering:
         found: np.ndarray = complex(twist[0], twist[1]) + 1j * twist[2] * self._places
         return found
 
-    def _turns(self, now: np.ndarray, then: np.ndarray) -> np.ndarray:
-        return np.asarray(np.angle(self._velocities(then) * np.conj(self._velocities(now))))
+    def _turns(self, back: np.ndarray, then: np.ndarray) -> np.ndarray:
+        """How far hinges turn to a twist; `back`: conjugates of their velocities by the present one."""
+        way = self._velocities(then) * back
+        return np.asarray(np.arctan2(way.imag, way.real))
 
     # ---- hinges with motors
 
@@ -344,7 +359,18 @@ def _poles(places: np.ndarray, scale: np.ndarray) -> np.ndarray:
     return np.concatenate([found, -found])
 
 
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The cross product, by the operations of np.cross, which takes ten times as long for one pair."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+
+
+def _size(vector: np.ndarray) -> float:
+    """As np.linalg.norm."""
+    return math.sqrt(vector.dot(vector))
+
+
 def unit(twist: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """The twist of size 1 in that metric."""
-    made = twist / float(np.abs(twist).max())  # first, as squares of the smallest numbers are 0
-    return np.asarray(made / np.linalg.norm(made * scale))
+    made = twist / max(map(abs, twist.tolist()))  # first, as squares of the smallest numbers are 0
+    return np.asarray(made / _size(made * scale))

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import zipfile
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -28,14 +29,16 @@ NEEDED = ("modelDescription.xml", "binaries/", "resources/", "extra/")
 
 
 class KnownNames(lark.Lark):
-    """FMPy checks each variable's name by a slow grammar, in every FMU anew: a name found legal is not read again."""
+    """FMPy checks each variable's name by a slow grammar, in every FMU anew: a name found legal is not read again, nor
+    is one that differs by its index alone."""
 
     legal: ClassVar[set[tuple[str, str]]] = set()
 
     def parse(self, text: str, *_: Any, **__: Any) -> None:
-        if (self.source_grammar, text) not in self.legal:
+        known = self.source_grammar, re.sub(r"\[\d+\]", "[]", text)
+        if known not in self.legal:
             super().parse(text)
-            self.legal.add((self.source_grammar, text))
+            self.legal.add(known)
 
 
 lark.Lark = KnownNames  # FMPy imports it when it checks names
@@ -59,20 +62,45 @@ def interface(version: int) -> cffi.FFI:
     return ffi
 
 
-_unpacked: dict[tuple[Path, int, int], tuple[tempfile.TemporaryDirectory[str], Any]] = {}
+@dataclass
+class Unpacked:
+    """An FMU that instances share, as they do in an importer: its files, its description, its variables by name."""
+
+    place: tempfile.TemporaryDirectory[str]
+    description: Any
+
+    @property
+    def folder(self) -> Path:
+        """Where its files are."""
+        return Path(self.place.name)
+
+    @functools.cached_property
+    def variables(self) -> dict[str, Any]:
+        """Its variables."""
+        return {variable.name: variable for variable in self.description.modelVariables}
+
+    @functools.cached_property
+    def elements(self) -> dict[str, list[str]]:
+        """By the name of an array, "der(x)" for "der(x[1])", the names of its elements."""
+        found: dict[str, list[str]] = {}
+        for name in self.variables:
+            found.setdefault(re.sub(r"\[[^[]*\](?=\)?$)", "", name), []).append(name)
+        return found
 
 
-def unpacked(fmu: Path) -> tuple[Path, Any]:
-    """Its files and its description, unpacked once: instances share both, as they do in an importer."""
+_unpacked: dict[tuple[Path, int, int], Unpacked] = {}
+
+
+def unpacked(fmu: Path) -> Unpacked:
+    """The FMU, unpacked once."""
     about = fmu.stat()
     key = (fmu, about.st_mtime_ns, about.st_size)
     if key not in _unpacked:
         folder = tempfile.TemporaryDirectory()
         with zipfile.ZipFile(fmu) as archive:  # what an importer needs; sources and pictures are five files of six
             archive.extractall(folder.name, [name for name in archive.namelist() if name.startswith(NEEDED)])
-        _unpacked[key] = folder, fmpy.read_model_description(folder.name, validate=False)
-    folder, description = _unpacked[key]
-    return Path(folder.name), description
+        _unpacked[key] = Unpacked(folder, fmpy.read_model_description(folder.name, validate=False))
+    return _unpacked[key]
 
 
 class Importer:
@@ -82,13 +110,14 @@ class Importer:
                  early_return: bool = False, update: Any = None, token: str | None = "", name: str | None = "vehicle",
                  resources: Path | None = None, intermediate: Sequence[int] | None = ()):
         self.fmu = fmu
-        self.folder, self.description = unpacked(fmu)
+        shared = unpacked(fmu)
+        self.folder, self.description, self.variables = shared.folder, shared.description, shared.variables
+        self._elements = shared.elements
         self.version = 2 if self.description.fmiVersion == "2.0" else 3
         self.ffi = interface(self.version)
         platform = "linux64" if self.version == 2 else "x86_64-linux"
         identifier = self.description.coSimulation.modelIdentifier
         self.library = self.ffi.dlopen(str(self.folder / "binaries" / platform / f"{identifier}.so"))
-        self.variables = {variable.name: variable for variable in self.description.modelVariables}
         self.log: list[tuple[int, str, str]] = []
         self.kind = kind
         self._keep: list[Any] = []
@@ -217,9 +246,8 @@ class Importer:
         """The names of its scalars (FMI 3 with arrays: just the name) and the type in function names."""
         if name in self.variables:
             return [name], self._type(name)
-        base, bracket = (name[:-1], ")") if name.endswith(")") else (name, "")
-        names = [each for each in self.variables if each.startswith(f"{base}[") and each.endswith(f"]{bracket}")]
-        assert names, f"no variable {name}"
+        assert name in self._elements, f"no variable {name}"
+        names = self._elements[name]
         return names, self._type(names[0])
 
     def size(self, name: str) -> int:

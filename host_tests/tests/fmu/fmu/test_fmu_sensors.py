@@ -227,6 +227,7 @@ def test_the_fmu_of_a_scene_with_sensors_is_one_for_co_simulation_alone_and_vali
         assert "use Co-Simulation" in importer.log[-1][2]
 
 
+@pytest.mark.nightly  # a process of its own; that of hinges on ground with friction is checked in every run
 def test_the_manipulation_toolbox_has_no_finding_about_sensors(tmp_path: Path) -> None:
     tool = Path(sys.executable).parent / "fmutool"
     done = subprocess.run([str(tool), "-input", str(fmu_of(tmp_path, 2)), "-check"], capture_output=True, text=True,

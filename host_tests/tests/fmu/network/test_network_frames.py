@@ -17,7 +17,7 @@ from laconic.can.rig.wire import ID_BASE, wire
 from laconic.fmu.network import loading_frames, make_network_fmu
 from laconic.scene import read_scene
 
-EXCHANGES = 10_000
+EXCHANGES = pytest.mark.parametrize("exchanges", [3_000, pytest.param(10_000, marks=pytest.mark.nightly)])
 PERIOD_US = 1000
 Frame = tuple[int, bytes]
 
@@ -135,14 +135,16 @@ def compare(host: HostNode, fmu: ByHand, script: Iterator[list[Frame]],
     return count, sent
 
 
-def test_the_nodes_own_frames_equal_those_of_the_host_over_ten_thousand_exchanges(tmp_path: Path) -> None:
+@EXCHANGES
+def test_the_nodes_own_frames_equal_those_of_the_host_over_thousands_of_exchanges(exchanges: int,
+                                                                                  tmp_path: Path) -> None:
     host = HostNode("robotino2")
     rig = Rig(host)
     with ByHand(make_network_fmu(read_scene("robotino2"), tmp_path / "rig.fmu")) as fmu:
-        count, sent = compare(host, fmu, rig.exchanges(EXCHANGES), rig)
-        assert count >= EXCHANGES
+        count, sent = compare(host, fmu, rig.exchanges(exchanges), rig)
+        assert count >= exchanges
         poses = [data for identifier, data in sent if identifier == ID_BASE + wire()["POSE"].offset]
-        assert len(poses) > 0.99 * EXCHANGES
+        assert len(poses) > 0.99 * exchanges
         assert len({data[2:] for data in poses}) > 1000  # it moves
         assert fmu.fmu.get("x_m") == pytest.approx(
             wire()["POSE"].unpack(poses[-1])["x"] * wire()["POSE"].fields["x"].scale, abs=1e-3)
@@ -162,13 +164,14 @@ def canopen_script(count: int) -> Iterator[list[Frame]]:
                (0x080, b"")]
 
 
-def test_canopen_drives_answer_as_on_the_host_over_ten_thousand_exchanges(tmp_path: Path) -> None:
+@EXCHANGES
+def test_canopen_drives_answer_as_on_the_host_over_thousands_of_exchanges(exchanges: int, tmp_path: Path) -> None:
     host = HostNode("canopen_agv", "canopen")
     with ByHand(make_network_fmu(read_scene("canopen_agv"), tmp_path / "agv.fmu", drives="canopen")) as fmu:
-        count, sent = compare(host, fmu, canopen_script(EXCHANGES))
-        assert count >= EXCHANGES
+        count, sent = compare(host, fmu, canopen_script(exchanges))
+        assert count >= exchanges
         answers = [data for identifier, data in sent if identifier in (0x584, 0x585)]
-        assert len(answers) > 1.99 * EXCHANGES
+        assert len(answers) > 1.99 * exchanges
         assert {data[0] for data in answers} == {0x60}  # none is an abort
         assert abs(fmu.fmu.get("wheel_angle_rad[1]")) > 1.0
         assert fmu.fmu.get("node_state") == 6.0

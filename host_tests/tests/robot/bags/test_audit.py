@@ -81,7 +81,7 @@ def tracked(folder: Path, log: Path, has_heading: bool) -> None:
     mapping.write_text(mapping.read_text() if has_heading else mapping.read_text().replace(', "yaw"]', "]"))
 
 
-@pytest.mark.parametrize("point", ["origin", "centre_of_mass", "positions"])
+@pytest.mark.parametrize("point", [pytest.param("origin", marks=pytest.mark.nightly), "centre_of_mass", "positions"])
 def test_the_tracker_has_its_row_and_its_place_whatever_point_the_log_has(point, tmp_path, capsys):
     log, mapping = log_of(tmp_path, track=1.02)
     tracked(tmp_path, log, point != "positions")
@@ -277,7 +277,7 @@ def test_steered_vehicles_are_exported_for_their_controllers(kind, controller, b
     assert "offset of the steering" in page and "mm/m ahead" in page and "rollers" not in page
 
 
-@pytest.mark.parametrize("kind", ["tricycle", "car"])
+@pytest.mark.parametrize("kind", [pytest.param("tricycle", marks=pytest.mark.nightly), "car"])
 def test_the_scene_and_the_map_that_an_audit_of_a_steered_vehicle_writes_replay_its_log(kind, tmp_path, capsys):
     scene, fitted, mapped = steered_scene(tmp_path, kind), tmp_path / "fitted.toml", tmp_path / "fitted_map.toml"
     scene.write_text(scene.read_text().replace("[[vehicle.wheel]]", "# counted from the front\n[[vehicle.wheel]]", 1)
@@ -428,8 +428,9 @@ def assert_holds_the_truth(parameters: list[dict]) -> None:
     assert {name: found[name] for name in truths} == pytest.approx(truths, rel=2e-5)
 
 
-@pytest.mark.parametrize("hung", HUNG)
-@pytest.mark.parametrize("kind", ["bag", "table"])
+@pytest.mark.parametrize(("hung", "kind"), [
+    pytest.param(hung, kind, marks=[] if (kind == "bag") == (number == 0) else [pytest.mark.nightly])
+    for number, hung in enumerate(HUNG) for kind in ("bag", "table")])
 def test_what_hangs_on_free_hinges_does_not_distort_a_differential_robot(kind, hung, hung_runs, tmp_path, capsys):
     scene, log = hung_scene(tmp_path, "scene", hung), hung_runs[hung][kind == "table"]
     (tmp_path / "map.toml").write_text(BY_WHEELS)

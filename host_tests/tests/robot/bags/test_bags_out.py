@@ -159,7 +159,7 @@ def test_a_scene_without_odometry_states_so(tmp_path, capsys):
     assert "has no /odom and no /tf" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("mode", ["--lockstep", "--free-run"])
+@pytest.mark.parametrize("mode", ["--lockstep", pytest.param("--free-run", marks=pytest.mark.nightly)])
 def test_a_rig_writes_what_its_node_sends(mode, tmp_path, capsys):
     bag = tmp_path / "run.mcap"
     assert run(["rig", "turtlebot3_burger", mode, "--steps", "2500", "--bag", str(bag), "--json"]) == 0
@@ -244,7 +244,8 @@ def test_a_name_of_a_file_that_is_not_written_is_refused_with_those_that_are(nam
     assert error.count("\n") == 1 and not (tmp_path / name).exists()
 
 
-@pytest.mark.parametrize("scene", ["kuka_youbot", "optiodom_omni3", "paper_differential_drive"])
+@pytest.mark.parametrize("scene", ["kuka_youbot", pytest.param("optiodom_omni3", marks=pytest.mark.nightly),
+                                   "paper_differential_drive"])
 def test_a_simulated_bag_is_not_said_to_lack_something(scene, tmp_path, capsys):
     bag = recorded(tmp_path, "run.mcap", Path(scene))
     capsys.readouterr()
@@ -267,7 +268,7 @@ def test_an_audit_of_a_simulated_bag_says_that_the_scene_is_right(tmp_path, caps
     assert "lacks something" not in page.partition("## What the fit states")[2] and "slip or drag there" not in page
 
 
-@pytest.mark.parametrize("scene", ["tricycle_agv", "f1tenth"])
+@pytest.mark.parametrize("scene", [pytest.param("tricycle_agv", marks=pytest.mark.nightly), "f1tenth"])
 def test_a_bag_of_a_steered_vehicle_replays_and_is_audited_without_a_map(scene, tmp_path, capsys):
     bag = recorded(tmp_path, "run.mcap", Path(scene))
     capsys.readouterr()

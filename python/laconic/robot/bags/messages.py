@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -152,7 +153,10 @@ def field_of(column: str) -> Callable[[Any], Any]:
             found, before = step(found, before), found
         return found
 
-    return take
+    if not steps or "[" in column:
+        return take
+    member = attrgetter(".".join(PARTS.findall(column)))  # of most fields, and far faster
+    return lambda message: take(message) if isinstance(message, dict) else member(message)
 
 
 def _member(name: str) -> Callable[[Any, Any], Any]:
@@ -182,6 +186,8 @@ def stamp_ns(message: Any) -> int | None:
         stamp = message.get("timestamp")  # of Foxglove's schemas
     if stamp is None or isinstance(stamp, (int, float, str)):
         return None
+    if (seconds := getattr(stamp, "sec", None)) is not None and (rest := getattr(stamp, "nanosec", None)) is not None:
+        return int(seconds) * 10**9 + int(rest)  # of nearly all messages, so first
     parts = [[stamp.get(name) if isinstance(stamp, dict) else getattr(stamp, name, None) for name in names]
              for names in STAMP_PARTS]
     seconds, rest = (next((value for value in found if value is not None), None) for found in parts)
