@@ -81,6 +81,12 @@ another_build() {
         cmake --build "$folder" -j2 --target "${targets[@]}" >>"$folder.log" 2>&1 || { tail -40 "$folder.log"; return 1; }
 }
 
+# make_debug TARGETS: these by Make, without optimisation
+make_debug() {
+    local -x CMAKE_GENERATOR="Unix Makefiles"
+    another_build build-make "$1" -DCMAKE_BUILD_TYPE=Debug
+}
+
 # unity_tests FOLDER OPTION…: the C tests of a build tree; in full only when one fails
 unity_tests() {
     ctest --test-dir "$1" -L unity -j2 --output-on-failure --no-tests=error --output-junit tests.xml "${@:2}" \
