@@ -165,7 +165,8 @@ def test_derive_prints_and_checks_against_the_core(capsys, form):
 
 
 @pytest.mark.parametrize("example", [
-    "caster", "differential-drive", *(pytest.param(name, marks=pytest.mark.nightly) for name in ("carriage", "trailer"))])
+    "caster", "differential-drive",
+    *(pytest.param(name, marks=pytest.mark.nightly) for name in ("carriage", "trailer"))])
 def test_derive_prints_the_worked_examples(capsys, example):
     status, out, _ = run(capsys, "derive", "--example", example, "--json")
     found = json.loads(out)

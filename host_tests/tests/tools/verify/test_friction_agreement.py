@@ -22,7 +22,7 @@ from references.friction.polish import polish
 from references.friction.problem import StepProblem, residual, size_of
 from references.friction.vehicles import random_problem, random_vehicle
 
-COLD, HARD, VEHICLES, STEPS = 120, 12, 30, 40
+COLD, HARD, VEHICLES, STEPS = 60, 12, 15, 40
 MOST_COLD_REFUSED, MOST_WARM_REFUSED = 1e-2, 1e-3
 
 
