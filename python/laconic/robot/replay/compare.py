@@ -156,7 +156,8 @@ def predicted_speeds(subject: Subject, recording: Recording, model: Friction, un
     vehicle.motor_gain_Nm_per_V, vehicle.motor_damping_Nms = 0.0, max(model.part("damping_Nms"), 0.0)
     plant = core.plant(vehicle, "auto", STEP_S)
     first, per_ampere, dry = start_index(recording), torque_per_ampere(subject), model.dry_torque(subject)
-    speeds = np.zeros_like(recording.wheel_angle_rad)
+    speeds, held = np.zeros_like(recording.wheel_angle_rad), core.input()
+    torque = np.frombuffer(core.ffi.buffer(held.axle_torque_Nm), core.dtype)[: plant.wheel_count]
     for k in range(first, len(recording.time_s) - 1):
         begin, end = recording.time_s[k], recording.time_s[k + 1]
         if begin > until_s:
@@ -167,7 +168,7 @@ def predicted_speeds(subject: Subject, recording: Recording, model: Friction, un
         for part in range(count):
             share = (part + 0.5) / count
             current = (1.0 - share) * recording.current_A[k] + share * recording.current_A[k + 1]
-            torque = per_ampere * current - dry(plant.wheel_speeds())
-            plant.run({"axle_torque_Nm": torque}, 1)
+            torque[:] = per_ampere * current - dry(plant.wheel_speeds())
+            plant.run(held)
         speeds[k + 1] = plant.wheel_speeds()
     return speeds
