@@ -143,7 +143,8 @@ def test_a_name_ends_as_its_format(scene, capsys, arguments):
 
 @pytest.mark.parametrize("arguments", [
     ("simulate", SCENE, "--out", "a/b/run.csv"), ("simulate", SCENE, "--plot", "a/b/run.PNG"),
-    ("derive", SCENE, "-o", "a/b/run.txt"), ("derive", SCENE, "--json", "-o", "a/b/run.json"),
+    ("derive", SCENE, "-o", "a/b/run.txt"),
+    pytest.param(("derive", SCENE, "--json", "-o", "a/b/run.json"), marks=pytest.mark.nightly),
     ("fmu", SCENE, "--fmi", "2", "-o", "a/b/run.fmu"),
     ("fmu", SCENE, "--fmi", "2", "--ssp", "-o", "a/b/run.ssp"),
     ("rig", "s1", "--steps", "2", "--log", "a/b/run.blf"), ("rig", "s1", "--steps", "2", "--junit", "a/b/run.xml"),

@@ -34,8 +34,8 @@ benchmark.command.callback = lambda **_: [Console().print(line) for line in rang
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("command, before", [("simulate s1", ""), ("simulate s1 --out -", ""),
-                                             ("benchmark step", RICH)])
+@pytest.mark.parametrize("command, before", [
+    pytest.param("simulate s1", "", marks=pytest.mark.nightly), ("simulate s1 --out -", ""), ("benchmark step", RICH)])
 def test_a_full_stdout_is_one_line(command, before):
     with Path("/dev/full").open("w") as full:
         done = started(main_with(command, before), stdout=full)
@@ -60,7 +60,8 @@ def test_a_closed_stdout_is_one_line():
 
 
 @pytest.mark.parametrize("name, status, words", [
-    ("SIGINT", 130, "stopped by the user"), ("SIGTERM", 143, "stopped by SIGTERM"), ("SIGHUP", 129, "by SIGHUP")])
+    ("SIGINT", 130, "stopped by the user"), ("SIGTERM", 143, "stopped by SIGTERM"),
+    pytest.param("SIGHUP", 129, "by SIGHUP", marks=pytest.mark.nightly)])
 def test_a_signal_is_one_line_and_leaves_no_half_file(name, status, words, tmp_path):
     out = tmp_path / "run.csv"
     out.write_text("before")

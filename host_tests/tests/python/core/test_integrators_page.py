@@ -147,8 +147,10 @@ class Case:
         return float(np.abs(by_page - by_core).max() / np.abs(by_core).max())
 
 
-@pytest.mark.parametrize("sampled", [False, True], ids=("held", "sampled"))
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("name", "sampled"), [
+    pytest.param(name, sampled, id=f"{name}-{'sampled' if sampled else 'held'}",
+                 marks=[] if sampled == (name in ("weak", "stiff")) else pytest.mark.nightly)
+    for name in CASES for sampled in (False, True)])
 @pytest.mark.parametrize("method", METHODS)
 def test_the_pages_formulas_give_the_cores_step(method, name, sampled):
     assert Case(name, method, sampled).difference(PAGE) < TOLERANCE

@@ -41,6 +41,11 @@ def found(compiler: str, options: list[str], folder: Path, mode: str = "nearest"
     if "not supported" in made.stderr or "unknown" in made.stderr or "unrecognized" in made.stderr:
         pytest.skip(f"{compiler} has no such option here")
     assert made.returncode == 0, made.stderr
+    return run(folder, mode)
+
+
+def run(folder: Path, mode: str) -> str:
+    """What the compiled self-test finds in that mode."""
     done = subprocess.run([str(folder / "self_test"), mode], capture_output=True, text=True, check=False)
     if done.returncode == 77:
         pytest.skip(f"no way known to set {mode} here")
@@ -65,12 +70,26 @@ def test_every_option_that_spoils_arithmetic_is_found(options, words, compiler, 
     assert words in found(compiler, [*options, *single], tmp_path)
 
 
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """A function that gives the folder of a compiler's program with sound options; each is compiled once."""
+    folders = {}
+
+    def folder(compiler):
+        if compiler not in folders:
+            folders[compiler] = tmp_path_factory.mktemp(compiler)
+            assert compiled(compiler, SOUND, folders[compiler]).returncode == 0
+        return folders[compiler]
+
+    return folder
+
+
 @needs_self_test
 @pytest.mark.parametrize("mode", ["up", "down", "zero", "ftz", "daz"])
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_every_mode_that_spoils_arithmetic_is_found(compiler, mode, tmp_path):
+def test_every_mode_that_spoils_arithmetic_is_found(compiler, mode, sound):
     words = "flushed to zero" if mode in ("ftz", "daz") else "not rounded to nearest"
-    assert words in found(compiler, SOUND, tmp_path, mode)
+    assert words in run(sound(compiler), mode)
 
 
 @needs_self_test

@@ -44,7 +44,8 @@ READERS: dict[str, Callable[[Path], Any]] = {
 
 # The readers share one function: what costs seconds to read is read by the first alone, at night by all.
 @pytest.mark.parametrize("text, message, reader", [
-    pytest.param(*case, reader, id=f"{name}-{who}", marks=[pytest.mark.nightly] if name == "tables" and k > 0 else [])
+    pytest.param(*case, reader, id=f"{name}-{who}",
+                 marks=[pytest.mark.nightly] if name in ("keys", "tables") and k > 0 else [])
     for name, case in TOO_MUCH.items() for k, (who, reader) in enumerate(READERS.items())])
 def test_every_reader_refuses_what_would_fill_the_memory(tmp_path: Path, reader: Callable[[Path], Any], text: str,
                                                          message: str) -> None:

@@ -210,9 +210,9 @@ def test_the_search_for_lags_begins_inside_their_bound(monkeypatch):
     assert lags["steering-lag"] > 0.0 and lags["speed-lag"] > 0.0 and lags["clock-lag"] == 0.0
 
 
-def test_95_percent_intervals_hold_the_truth_of_four_made_up_steered_robots():
-    held = [each for trial in steered_trials(4, seed=2) for each in trial.held()]
-    assert len(held) >= 30 and np.mean(held) > 0.8
+def test_95_percent_intervals_hold_the_truth_of_two_made_up_steered_robots():
+    held = [each for trial in steered_trials(2, seed=2) for each in trial.held()]
+    assert len(held) >= 15 and np.mean(held) > 0.8
 
 
 @pytest.mark.nightly

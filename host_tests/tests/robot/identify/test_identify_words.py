@@ -67,9 +67,10 @@ def with_slip_of_its_own(scene, path, random):
     return replace(log, wheel_angle_rad=np.vstack([np.zeros(turned.shape[1]), np.cumsum(turned, axis=0)]))
 
 
-def test_errors_that_repeat_are_named_and_widen_the_intervals_until_they_hold_the_truth():
+@pytest.mark.parametrize("seeds", [4, pytest.param(8, marks=pytest.mark.nightly)])
+def test_errors_that_repeat_are_named_and_widen_the_intervals_until_they_hold_the_truth(seeds):
     scene, held, plain, found = read_scene("optiodom_omni3"), [], [], []
-    for seed in range(8):
+    for seed in range(seeds):
         random = np.random.default_rng([seed, 3])
         logs = [with_slip_of_its_own(scene, Path(f"/made-up/{i}/run.csv"), random) for i in range(7)]
         fitted = found_from(scene, logs, ("radius", "distance"))

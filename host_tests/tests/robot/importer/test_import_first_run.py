@@ -44,8 +44,9 @@ def goes(scene: Scene) -> dict[str, np.ndarray]:
     return simulate(replace(scene, initial=replace(scene.initial, heading_rad=1e-3))).columns
 
 
-@pytest.mark.parametrize("beside_m", [0.0, 0.004, 0.03])
-@pytest.mark.parametrize("behind_m", [0.1, 0.15])
+@pytest.mark.parametrize(("behind_m", "beside_m"), [
+    (0.1, 0.0), (0.15, 0.03), *(pytest.param(*each, marks=pytest.mark.nightly)
+                                for each in ((0.1, 0.004), (0.1, 0.03), (0.15, 0.0), (0.15, 0.004)))])
 def test_a_robot_with_a_rear_caster_is_damped_so_that_it_turns_left_as_its_line_says(
         tmp_path: Path, behind_m: float, beside_m: float) -> None:
     found, scene = imported(tmp_path, robot(base(-behind_m, beside_m), PAIR, caster(-0.2)))

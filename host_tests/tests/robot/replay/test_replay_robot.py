@@ -43,6 +43,8 @@ def made_up_run(robot, path: Path, direction_deg: float, speed: float, drag: flo
     plant, rows = core.plant(vehicle, EXPLICIT, 0.001), robot.matrices.wheel_rows
     wanted = rows @ np.array([np.cos(angle), np.sin(angle), 0.0]) * speed / 0.04
     share, per_ampere, step, lines, last = np.linalg.inv(rows), torque_per_ampere(robot), 0.001, [], np.zeros(2)
+    held = core.input()
+    torques = np.frombuffer(core.ffi.buffer(held.axle_torque_Nm), core.dtype)[: len(rows)]
     for k in range(5000):
         wheel = plant.wheel_speeds()
         torque = np.clip(3.0 * (wanted - wheel), -2.5, 2.5)
@@ -58,7 +60,8 @@ def made_up_run(robot, path: Path, direction_deg: float, speed: float, drag: flo
         size = np.hypot(*travel)
         friction = TRUE["torque"] * np.tanh(wheel / 0.3)
         friction = friction + share[:2].T @ (0.04 * drag * travel / max(size, 1e-12) * np.tanh(size / 0.01))
-        plant.run({"axle_torque_Nm": torque - friction}, 1)
+        torques[:] = torque - friction
+        plant.run(held)
     with path.open("w", newline="") as file:
         writer = csv.writer(file, delimiter=";")
         writer.writerows([HEAD, HEAD, HEAD, *lines])

@@ -1,5 +1,7 @@
 """Driven motion (section 5), and errata 3 and 4: steady motions, parabola, thresholds, Andronov–Hopf points, cycles."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -135,10 +137,16 @@ def test_turning_motion_is_stable_exactly_when_a0_is_positive_and_a1_a2_exceeds_
     assert seen == ({"stable"} if example is PAPER and nu_1 == 0.0 else {"stable", "unstable"})
 
 
+@cache
+def diagram_about_the_vertex(nu_1):
+    _, command = PAPER.vertex(nu_1)
+    return diagram(lambda value: PAPER.field(nu_1, value), command - 3.0, command + 12.0)
+
+
 @pytest.mark.parametrize("nu_1", NU_1)
 def test_erratum_4_vertex_of_the_parabola_has_the_factor_one_eighth_and_is_nu_3(nu_1):
     nu_3, command = PAPER.vertex(nu_1)
-    found = diagram(lambda value: PAPER.field(nu_1, value), command - 3.0, command + 12.0)
+    found = diagram_about_the_vertex(nu_1)
     folds = [special for special in found.specials if special.kind == "fold"]
     assert len(folds) == 1
     assert folds[0].parameter == pytest.approx(command, abs=1e-10)
@@ -152,7 +160,7 @@ def test_erratum_4_vertex_of_the_parabola_has_the_factor_one_eighth_and_is_nu_3(
 @pytest.mark.parametrize("nu_1", NU_1)
 def test_branches_of_turning_motions_open_to_the_right_and_cross_straight_motion_at_the_threshold(nu_1):
     _, vertex = PAPER.vertex(nu_1)
-    found = diagram(lambda value: PAPER.field(nu_1, value), vertex - 3.0, vertex + 12.0)
+    found = diagram_about_the_vertex(nu_1)
     straight, turning = found.branches
     assert np.abs(straight.nu()[:, 2]).max() < 1e-9
     assert min(turning.parameter) == pytest.approx(vertex, abs=1e-2)

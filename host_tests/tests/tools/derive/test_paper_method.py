@@ -162,6 +162,15 @@ VEHICLES = {
 }
 
 
+ALIKE = ("three omni wheels", "four mecanum wheels", "seven unequal wheels", "two fixed wheels on one axle line")
+QUICK = ("paper_three_wheel_driven", "kuka_youbot", "turtlebot3_burger", "example_two_wheel_sizes")
+
+
+def at_night(names, which):
+    """The names; those for which `which` holds at night alone."""
+    return [pytest.param(name, marks=pytest.mark.nightly) if which(name) else name for name in names]
+
+
 def subject_from(data) -> Subject:
     core = load("double")
     vehicle = core.vehicle(data)
@@ -169,13 +178,13 @@ def subject_from(data) -> Subject:
     return Subject(scene, core, vehicle, core.prepare(vehicle), core.matrices(vehicle), {})
 
 
-@pytest.mark.parametrize("data", VEHICLES.values(), ids=VEHICLES.keys())
-def test_core_derivative_equals_the_derived_one_at_1000_random_states(data):
-    subject = subject_from(data)
+@pytest.mark.parametrize("name", at_night(VEHICLES, lambda name: name in ALIKE))
+def test_core_derivative_equals_the_derived_one_at_1000_random_states(name):
+    subject = subject_from(VEHICLES[name])
     assert core_difference(subject, scene_system.derive(subject.numbers()), count=1000) < 1e-12
 
 
-@pytest.mark.parametrize("name", ideal_scene_names())
+@pytest.mark.parametrize("name", at_night(ideal_scene_names(), lambda name: name not in QUICK))
 def test_core_derivative_equals_the_derived_one_for_every_scene_on_ideal_ground(name):
     subject = subject_of(read_scene(name))
     assert core_difference(subject, scene_system.derive(subject.numbers()), count=100) < 1e-12

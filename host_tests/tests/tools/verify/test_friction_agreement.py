@@ -22,7 +22,7 @@ from references.friction.polish import polish
 from references.friction.problem import StepProblem, residual, size_of
 from references.friction.vehicles import random_problem, random_vehicle
 
-COLD, HARD, VEHICLES, STEPS = 120, 12, 30, 40
+HARD, STEPS = 12, 40
 MOST_COLD_REFUSED, MOST_WARM_REFUSED = 1e-2, 1e-3
 
 
@@ -33,9 +33,10 @@ def problems(count):
         yield random_problem(random, random_vehicle(random))
 
 
-def test_cold_random_steps_agree_with_the_oracle_to_1e9_and_have_that_residual_and_few_are_refused():
+@pytest.mark.parametrize("cold", [60, pytest.param(120, marks=pytest.mark.nightly)])
+def test_cold_random_steps_agree_with_the_oracle_to_1e9_and_have_that_residual_and_few_are_refused(cold):
     count = Count()
-    for problem in problems(COLD):
+    for problem in problems(cold):
         compare(problem, count)
     assert [text for text, _ in count.bad if "refused" not in text] == []
     assert count.unsure == 0
@@ -43,14 +44,15 @@ def test_cold_random_steps_agree_with_the_oracle_to_1e9_and_have_that_residual_a
     assert count.may_refuse(MOST_COLD_REFUSED)
 
 
-def test_driven_vehicles_never_gain_energy_from_a_warm_step_nor_leave_the_residual_or_the_oracle():
+@pytest.mark.parametrize("vehicles", [15, pytest.param(30, marks=pytest.mark.nightly)])
+def test_driven_vehicles_never_gain_energy_from_a_warm_step_nor_leave_the_residual_or_the_oracle(vehicles):
     count = Count()
-    for seed in range(VEHICLES):
+    for seed in range(vehicles):
         drive(seed, STEPS, count)
     assert [text for text, _ in count.bad if "refused" not in text] == []
     assert count.may_refuse(MOST_WARM_REFUSED)
     assert 0.0 < count.difference <= LIMIT
-    assert count.solved > 0.5 * VEHICLES * STEPS
+    assert count.solved > 0.5 * vehicles * STEPS
 
 
 def test_a_vehicle_whose_wheels_hold_each_other_with_a_hundred_times_the_free_motion_is_hardly_ever_refused():

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit  # the quantile of Student's t; scipy.stats takes long to load
 
 from laconic.errors import BadInput
 from laconic.robot.identify.solve import CONFIDENCE
@@ -58,7 +58,7 @@ def controller_of(logs: Sequence[Log]) -> FoundController:
     gain = _slope([(error, current) for error, current, _, _ in each])
     integral = _slope([(gained, change) for _, _, gained, change in each])
     dead = np.array([_dead_time(log) for log in logs])
-    half = student.ppf(0.5 + CONFIDENCE / 2.0, len(dead) - 1) * dead.std(ddof=1) / np.sqrt(len(dead))
+    half = stdtrit(len(dead) - 1, 0.5 + CONFIDENCE / 2.0) * dead.std(ddof=1) / np.sqrt(len(dead))
     return FoundController(gain, integral, (float(dead.mean()), float(half)))
 
 
@@ -83,7 +83,7 @@ def _slope(pairs: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[float, float
     slope = sum(float(x @ y) for x, y in pairs) / moment
     scores = np.array([float(x @ (y - slope * x)) for x, y in pairs])
     correction = len(pairs) / (len(pairs) - 1)
-    half = student.ppf(0.5 + CONFIDENCE / 2.0, len(pairs) - 1) * np.sqrt(correction * (scores @ scores)) / moment
+    half = stdtrit(len(pairs) - 1, 0.5 + CONFIDENCE / 2.0) * np.sqrt(correction * (scores @ scores)) / moment
     return float(slope), float(half)
 
 

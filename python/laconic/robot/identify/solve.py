@@ -20,7 +20,7 @@ from typing import Any, Protocol
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import t as student
+from scipy.special import stdtrit  # the quantile of Student's t; scipy.stats takes long to load
 
 from laconic.robot.identify.parameter import Parameters, Vehicle
 from laconic.robot.identify.structure import Structure, block_sums, likeness_of, unexplained
@@ -205,7 +205,7 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
 
     def half_widths(rows: np.ndarray) -> np.ndarray:
         freedom = max(len(rows) - count, 1)
-        widths: np.ndarray = student.ppf(0.5 + CONFIDENCE / 2.0, freedom) * np.sqrt(np.diag(covariance(rows)))
+        widths: np.ndarray = stdtrit(freedom, 0.5 + CONFIDENCE / 2.0) * np.sqrt(np.diag(covariance(rows)))
         return widths
 
     single = np.concatenate(parts)

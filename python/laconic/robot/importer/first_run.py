@@ -18,6 +18,7 @@ from laconic.scene.inputs import Input
 
 if TYPE_CHECKING:
     from laconic.robot.importer.imported_scene import Imported
+    from laconic.simulation import Trajectory
 
 NUDGE_RAD_PER_S, NUDGE_S = 1e-4, 0.1  # a yaw rate so small that what it becomes is in proportion to it
 GRID_S = 0.01           # of the runs that the import writes
@@ -53,16 +54,28 @@ class Damping:
                 f"{self.slows_s:g} s; without it {self.why}")
 
 
-def growth_of(scene: Scene, nudge_at_s: float) -> float:
-    """By how much a small yaw rate, given by a moment on the body, grows until the run ends; 0 where wheels resist."""
+def run_of(scene: Scene) -> Trajectory | None:
+    """The run with what is judged of it; None where it is refused. Whoever writes the scene shortens such a run, or
+    reports the refusal."""
+    from laconic.simulation import simulate
+
+    try:
+        return simulate(scene, SIGNALS, watched=False)
+    except (Refused, BadInput):
+        return None
+
+
+def growth_of(scene: Scene, straight: Trajectory, nudge_at_s: float) -> float:
+    """By how much a small yaw rate, given by a moment on the body, grows until the run ends; 0 where wheels resist.
+
+    `straight` is the run without that moment."""
     from laconic.simulation import simulate
 
     begin = round(math.floor(nudge_at_s / GRID_S) * GRID_S, 6)
     moment = float(scene.vehicle["yaw_inertia_kgm2"]) * NUDGE_RAD_PER_S / NUDGE_S
     nudge = Input("body_moment_Nm", "steps", "nudge", (begin, round(begin + NUDGE_S, 6)), (moment, 0.0))
     try:
-        straight, nudged = (simulate(each, ("yaw_rate_rad_per_s",), watched=False) for each in (
-            scene, replace(scene, inputs=(*scene.inputs, nudge))))
+        nudged = simulate(replace(scene, inputs=(*scene.inputs, nudge)), ("yaw_rate_rad_per_s",), watched=False)
     except (Refused, BadInput):
         return 0.0
     count = min(len(straight.time_s), len(nudged.time_s))
@@ -72,14 +85,8 @@ def growth_of(scene: Scene, nudge_at_s: float) -> float:
     return float(off[after].max()) / given if given > YIELDS * NUDGE_RAD_PER_S else 0.0
 
 
-def fault_of(scene: Scene, promise: Promise) -> str:
+def fault_of(run: Trajectory, promise: Promise) -> str:
     """What a run does instead of what is promised; empty where it keeps to it."""
-    from laconic.simulation import simulate
-
-    try:
-        run = simulate(scene, SIGNALS)
-    except (Refused, BadInput):
-        return ""  # whoever writes the scene shortens such a run, or reports the refusal
     columns, time_s = run.columns, run.time_s
     if promise.way is not None:
         before = time_s <= min(promise.turns_at_s, time_s[-1])
@@ -103,9 +110,9 @@ def _strays(way: Array, columns: dict[str, Array], time_s: Array) -> str:
     return "" if ahead[-1] > 0.0 else "it does not move ahead"
 
 
-def unrest_of(scene: Scene, promise: Promise, wheels: Sequence[FoundWheel], com_m: Array) -> str:
+def unrest_of(scene: Scene, run: Trajectory, promise: Promise, wheels: Sequence[FoundWheel], com_m: Array) -> str:
     """What is wrong with a first run, in words; empty where it is stable and does what is promised."""
-    growth, fault = growth_of(scene, promise.fast_at_s), fault_of(scene, promise)
+    growth, fault = growth_of(scene, run, promise.fast_at_s), fault_of(run, promise)
     if growth <= GROWS:
         return fault and f"the first run does not do what its line says: {fault}"
     way = promise.way if promise.way is not None else np.array([1.0, 0.0])

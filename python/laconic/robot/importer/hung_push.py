@@ -260,7 +260,8 @@ def _reached(plan: Plan, data: Mapping[str, Any], where: Any, inputs: Tables, un
     from laconic.simulation import simulate
 
     until_s = math.ceil(until_s / STEP_S) * STEP_S
-    tables = {**data, "input": inputs, "run": {"duration_s": round(until_s, 6), "step_s": STEP_S}}
+    whole_s = round(until_s, 6)
+    tables = {**data, "run": {"duration_s": whole_s, "step_s": STEP_S}, "outputs": {"every_s": whole_s}}
     tables["input"] = [_within(each, until_s) for each in (*inputs, *data["input"])]
     try:
         scene = scene_of(Table(where, "", copy.deepcopy(tables)))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import copy
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from laconic.errors import BadInput, Refused
 from laconic.robot.importer.dropped import idle_of
+from laconic.robot.importer.first_run import SIGNALS
 from laconic.robot.importer.hung import ahead_of, hung_of, links_of_carriage
 from laconic.robot.importer.hung_push import SHORTEST_S, STEP_S, Plan, drive, shortened
 from laconic.robot.importer.hung_scene import HungTables, rigid_table
@@ -21,6 +22,9 @@ from laconic.robot.importer.wheels import FoundWheel
 from laconic.scene import Scene, scene_of
 from laconic.scene.standing import Standing, standing_of
 from laconic.scene.table import Table
+
+if TYPE_CHECKING:
+    from laconic.simulation import Trajectory
 
 IDEAL = ("the ground is ideal, as wheels on hinges do not slip; --no-hinges makes casters and steered wheels supports, "
          "for ground with friction and for commands that do not take hinges")
@@ -71,9 +75,9 @@ class HungWriter(Writer):
         for at, words in zip([each for each in firsts if each is not None], driven.words, strict=False):
             self.comments["input", str(at), "signal"] = f"assumption: {words}"
         data["run"] = {"duration_s": driven.duration_s, "step_s": STEP_S}
-        self.check_run(data)
+        run = self.check_run(data)
         self.promise = driven.promise
-        self.judge(self.checked(data))
+        self.judge(self.checked(data), run)
         return self.written(data, standing, self.tables.words())
 
     def name_joints(self, data: dict[str, Any], scene: Scene) -> None:
@@ -151,13 +155,13 @@ class HungWriter(Writer):
             raise BadInput(f"{str(refused).rstrip('.')}; {HELD}") from None
         return scene
 
-    def check_run(self, data: dict[str, Any]) -> None:
-        """Ends the run before a step that is refused, such as where a caster comes to its stop."""
+    def check_run(self, data: dict[str, Any]) -> Trajectory | None:
+        """The first run. Ends it before a step that is refused, such as where a caster comes to its stop; then None."""
         from laconic.simulation import RunRefused, simulate
 
         scene = self.checked(data)
         try:
-            simulate(scene, ("x_m",))
+            return simulate(scene, SIGNALS)
         except RunRefused as refused:
             ends_s = round(float(np.floor(10.0 * refused.run.time_s[-1])) / 10.0, 6)
             if ends_s < STEP_S:
@@ -166,6 +170,7 @@ class HungWriter(Writer):
             data["run"]["duration_s"] = ends_s
             data["input"] = shortened(data.get("input", []), ends_s)
             self.checked(data)
+            return None
         except (Refused, BadInput) as refused:
             raise BadInput(f"{str(refused).rstrip('.')}; {HELD}") from None
 

@@ -6,7 +6,7 @@ import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from laconic.robot.importer.answers import Answers
 from laconic.robot.importer.axle_lines import brought_to_meet, straightened
 from laconic.robot.importer.axle_lines import lines_of as lines_of_axles
 from laconic.robot.importer.dropped import doubts_of, drives_elsewhere, dropped_of, idle_of
-from laconic.robot.importer.first_run import Damping, Promise, steadied, unrest_of
+from laconic.robot.importer.first_run import Damping, Promise, run_of, steadied, unrest_of
 from laconic.robot.importer.formats import read_robot
 from laconic.robot.importer.gravity import listed
 from laconic.robot.importer.hung import on_one_axle
@@ -39,6 +39,9 @@ from laconic.scene.axle_lines import meeting_point
 from laconic.scene.scene_text import Comments, lines_of
 from laconic.scene.standing import Standing, standing_of
 from laconic.scene.table import Table
+
+if TYPE_CHECKING:
+    from laconic.simulation import Trajectory
 
 DIGITS = 9
 SQUARE = 1e-12  # of an axle along or across the body
@@ -155,10 +158,10 @@ class Writer:
         self.judge(self.checked(data))
         return self.written(data, standing)
 
-    def judge(self, scene: Scene) -> None:
-        """Simulates the first run, and remarks where it is unstable or not what its line says."""
-        if scene.inputs:
-            self.fault = unrest_of(scene, self.promise, self.ground.wheels, self.whole.com_m)
+    def judge(self, scene: Scene, run: Trajectory | None = None) -> None:
+        """Remarks where the first run is unstable or not what its line says; `run`: that run, if there is one yet."""
+        if scene.inputs and (run := run or run_of(scene)):
+            self.fault = unrest_of(scene, run, self.promise, self.ground.wheels, self.whole.com_m)
         if self.fault:
             self.remarks.append(self.fault)
 

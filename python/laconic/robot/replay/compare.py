@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit  # the quantile of Student's t; scipy.stats takes long to load
 
 from laconic.robot.replay.friction import CONFIDENCE, Friction, body_motion, torque_per_ampere
 from laconic.robot.replay.log import Recording
@@ -94,7 +94,7 @@ def block_mean(time_s: np.ndarray, values: np.ndarray) -> Mean:
     means = np.array([values[number == k].mean() for k in np.unique(number) if (number == k).sum() > 5])
     if len(means) < 2:
         return Mean(float(values.mean()), float("inf"))
-    half = student.ppf(0.5 + CONFIDENCE / 2.0, len(means) - 1) * means.std(ddof=1) / np.sqrt(len(means))
+    half = stdtrit(len(means) - 1, 0.5 + CONFIDENCE / 2.0) * means.std(ddof=1) / np.sqrt(len(means))
     return Mean(float(means.mean()), float(half))
 
 
@@ -129,7 +129,7 @@ def _ratio(time_s: np.ndarray, path: np.ndarray, seen: np.ndarray, unit: np.ndar
     values = np.array(shares)
     if len(values) < 2:
         return Mean(float(values.mean()) if len(values) else float("nan"), float("inf"))
-    half = student.ppf(0.5 + CONFIDENCE / 2.0, len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values))
+    half = stdtrit(len(values) - 1, 0.5 + CONFIDENCE / 2.0) * values.std(ddof=1) / np.sqrt(len(values))
     return Mean(float(values.mean()), float(half))
 
 
@@ -156,7 +156,8 @@ def predicted_speeds(subject: Subject, recording: Recording, model: Friction, un
     vehicle.motor_gain_Nm_per_V, vehicle.motor_damping_Nms = 0.0, max(model.part("damping_Nms"), 0.0)
     plant = core.plant(vehicle, "auto", STEP_S)
     first, per_ampere, dry = start_index(recording), torque_per_ampere(subject), model.dry_torque(subject)
-    speeds = np.zeros_like(recording.wheel_angle_rad)
+    speeds, held = np.zeros_like(recording.wheel_angle_rad), core.input()
+    torque = np.frombuffer(core.ffi.buffer(held.axle_torque_Nm), core.dtype)[: plant.wheel_count]
     for k in range(first, len(recording.time_s) - 1):
         begin, end = recording.time_s[k], recording.time_s[k + 1]
         if begin > until_s:
@@ -167,7 +168,7 @@ def predicted_speeds(subject: Subject, recording: Recording, model: Friction, un
         for part in range(count):
             share = (part + 0.5) / count
             current = (1.0 - share) * recording.current_A[k] + share * recording.current_A[k + 1]
-            torque = per_ampere * current - dry(plant.wheel_speeds())
-            plant.run({"axle_torque_Nm": torque}, 1)
+            torque[:] = per_ampere * current - dry(plant.wheel_speeds())
+            plant.run(held)
         speeds[k + 1] = plant.wheel_speeds()
     return speeds

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit  # the quantile of Student's t; scipy.stats takes long to load
 
 from laconic.errors import BadInput
 from laconic.robot.replay.log import Recording
@@ -143,4 +143,4 @@ def _half_widths(blocks: Sequence[tuple[np.ndarray, np.ndarray]], values: np.nda
     bread = np.linalg.pinv(whole.T @ whole)
     scores = np.array([columns.T @ (target - columns @ values) for columns, target in blocks])
     covariance = bread @ (scores.T @ scores) @ bread * runs / (runs - 1)
-    return student.ppf(0.5 + CONFIDENCE / 2.0, runs - 1) * np.sqrt(np.diag(covariance))
+    return stdtrit(runs - 1, 0.5 + CONFIDENCE / 2.0) * np.sqrt(np.diag(covariance))

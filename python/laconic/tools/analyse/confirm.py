@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
+from laconic.core.inputs import FOR_EVER, Schedule
 from laconic.core.plant import Plant
+from laconic.core.recording import Recorder
 from laconic.tools.analyse.cycle import LimitCycle
 from laconic.tools.analyse.field import Field
 from laconic.tools.analyse.from_core import Inputs, Subject
@@ -16,7 +18,9 @@ from laconic.tools.analyse.steady import SteadyMotion
 STEPS_PER_FASTEST = 60  # steps per 1/|fastest eigenvalue|
 MOST_STEPS = 2_000_000  # of a steady motion's simulation: beyond, rounding and the method's error hide the motion
 MOST_PERIODS = 4000     # of a cycle's
+SAMPLES = 24            # of a cycle's period, where the distance from the steady motion is measured
 CLEAR_GROWTH = 4.0      # growth times periods after which a motion has clearly left a cycle, or returned
+NU = tuple(f"nu_rad_per_s[{k}]" for k in (1, 2, 3))
 
 
 @dataclass(frozen=True)
@@ -94,17 +98,22 @@ def distance_after(subject: Subject, inputs: Inputs, field: Field, cycle: LimitC
 
     Runs until the distance has fallen below 0.3 or risen above 2 at its largest over a period, or long enough.
     """
-    held = subject.core.input(inputs)
     plant = plant_at(subject, field.nu(centre + share * (cycle.start_zeta - centre)), step_s)
-    middle, per_period = field.nu(centre), 24
-    steps = max(1, int(round(cycle.period_s / step_s / per_period)))
+    row = subject.core.input_row(inputs, plant.wheel_count)
+    held = Schedule(subject.core, range(len(row)), row[None], [FOR_EVER])
+    middle, steps = field.nu(centre), max(1, int(round(cycle.period_s / step_s / SAMPLES)))
     periods = int(min(MOST_PERIODS, 40.0 / max(growth_per_period(cycle), 1e-3)))
     largest = 0.0
     for _ in range(periods):
-        largest = 0.0
-        for _ in range(per_period):
-            plant.run(held, steps)
-            largest = max(largest, float(np.abs(plant.nu - middle).max()) / cycle.size)
+        largest = float(np.abs(sampled_nu(plant, held, steps) - middle).max()) / cycle.size
         if not 0.3 < largest < 2.0:
             break
     return largest
+
+
+def sampled_nu(plant: Plant, held: Schedule, steps: int) -> np.ndarray:
+    """ν after each of SAMPLES runs of so many steps, one row each."""
+    recorder = Recorder(plant, NU, steps, SAMPLES + 1)  # it begins with the row at the start
+    plant.follow(held, plant.steps + SAMPLES * steps, recorder)
+    recorder.take_last(plant.input_of(None))
+    return np.column_stack(list(recorder.columns().values()))[1:]

@@ -67,15 +67,18 @@ class Curve:
     def __init__(self, field_of: FieldOf, low: float, high: float, yaw_scale: float, straight: bool):
         self.field_of, self.low, self.spread = field_of, low, high - low
         self.yaw_scale, self.straight = yaw_scale, straight
+        self._newest = float("nan"), np.zeros(0)
 
     def parameter(self, u: float) -> float:
         """Parameter value of the scaled coordinate u in [0, 1]."""
         return self.low + self.spread * u
 
     def coefficients(self, u: float) -> np.ndarray:
-        """Of the polynomial in v, lowest first."""
-        found = steady_polynomial(self.field_of(self.parameter(u))) * self.yaw_scale ** np.arange(4)
-        return found[1:] if self.straight else found
+        """Of the polynomial in v, lowest first. The newest are kept: value and slopes at a point need the same."""
+        if u != self._newest[0]:
+            found = steady_polynomial(self.field_of(self.parameter(u))) * self.yaw_scale ** np.arange(4)
+            self._newest = u, found[1:] if self.straight else found
+        return self._newest[1]
 
     def value(self, point: np.ndarray) -> float:
         """The polynomial at a scaled point."""

@@ -61,10 +61,16 @@ def steady_polynomial(field: Field) -> np.ndarray:
     others = np.array([r[1] * r[2], r[2] * r[0], r[0] * r[1]])
     return np.array([
         -float(g @ (others * b)),
-        r[0] * others[0] + float(g @ np.cross(r * w, b)),
+        r[0] * others[0] + float(g @ _crossed(r * w, b)),
         -float((g @ w) * (w @ b)),
         float(w @ (r * w)),
     ])
+
+
+def _crossed(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Returns the cross product; np.cross spends most of its time on the axes of its arrays."""
+    (a, b, c), (x, y, z) = first.tolist(), second.tolist()
+    return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
 
 
 def classify(field: Field, zeta: np.ndarray) -> SteadyMotion:

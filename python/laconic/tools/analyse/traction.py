@@ -49,7 +49,7 @@ def study(subject: Subject, progress: Callable[[float], None] | None = None) -> 
     """Runs the scene and judges it at no more than about MOST_SAMPLES instants; the first slip is found to the step."""
     scene = subject.scene
     plant, inputs = scene.plant(subject.core), scene.inputs_on_grid()
-    total, sampler = inputs.steps, _Sampler(subject, plant)
+    total, sampler = inputs.steps, _Sampler(subject, plant, inputs.signals)
     ticks = sorted({*range(0, total, max(1, -(-total // MOST_SAMPLES))), *inputs.changes, total})
     slipped = False
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
@@ -64,8 +64,7 @@ def study(subject: Subject, progress: Callable[[float], None] | None = None) -> 
 
 def _sample(sampler: _Sampler, inputs: InputsOnGrid, tick: int) -> None:
     """One sample with the inputs at a tick."""
-    values = np.array(list(inputs.held_at(tick).values()))
-    sampler.take(tick * inputs.step_s, values, inputs.signals)
+    sampler.take(tick * inputs.step_s, inputs.held_at(tick))
 
 
 def _retaken(sampler: _Sampler, inputs: InputsOnGrid, ticks: list[int], at: int) -> bool:
@@ -90,11 +89,12 @@ def _retaken(sampler: _Sampler, inputs: InputsOnGrid, ticks: list[int], at: int)
 class _Sampler:
     """Collects one sample after another and checks its balance."""
 
-    def __init__(self, subject: Subject, plant: Plant):
+    def __init__(self, subject: Subject, plant: Plant, signals: tuple[str, ...]):
         self.subject, self.plant = subject, plant
         self.rows: list[tuple[Any, ...]] = []
         self.contact = _prepared_contact(subject)
         core, n = subject.core, subject.wheel_count
+        self.offsets = [core.input_offset(signal) for signal in signals]
         self.pull = core.numbers(self.contact.pull, -1, 2)[:n]
         self.axle = core.numbers(self.contact.axle, -1, 2)[:n]
         self.positions_m = core.numbers(self.contact.point_m, -1, 2)[:n]
@@ -109,12 +109,13 @@ class _Sampler:
         _, along, lateral, _, normal, *_ = self.rows[-1]
         return bool((np.hypot(along, lateral) > friction * np.maximum(normal[:n], 0.0)).any())
 
-    def take(self, time_s: float, values: np.ndarray, signals: tuple[str, ...]) -> None:
-        """One sample with these inputs."""
+    def take(self, time_s: float, inputs: dict[str, float]) -> None:
+        """One sample with these inputs, one for each signal."""
         subject, core, n = self.subject, self.subject.core, self.subject.wheel_count
         points = n + subject.vehicle.support_count
-        inputs = dict(zip(signals, values.tolist(), strict=True))
-        held = core.input(inputs)
+        row = np.zeros(core.input_length, core.dtype)
+        row[self.offsets] = list(inputs.values())
+        held = core.input(row)
         try:
             found = self.plant.reactions(held)
         except Refused as refused:
