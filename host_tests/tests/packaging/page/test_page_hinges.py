@@ -148,6 +148,7 @@ def test_wheels_that_slip_on_hinges_are_shown_and_end_where_the_command_brings_t
     assert simulated(exported(page, tmp_path)) == pose(page)
 
 
+@pytest.mark.nightly
 def test_a_start_that_the_robot_without_slip_refuses_ends_that_one_alone(page):
     choose(page, "trailer_on_ice")
     page.choose("turn", str(most(page, "turn")))
@@ -217,6 +218,7 @@ def test_velocity_drives_a_swerve_whose_modules_turn_by_themselves(window, own_p
     assert simulated(exported(window, tmp_path)) == pytest.approx(pose(window), rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.nightly
 def test_a_car_with_a_servo_for_each_wheel_steers_both_along_one_circle(window, own_page):
     window.open(own_page / "laconic.html", prefers_reduced_motion="reduce")
     choose(window, "car")
@@ -230,6 +232,7 @@ def test_a_car_with_a_servo_for_each_wheel_steers_both_along_one_circle(window, 
     assert shown(window, "now-turn") > 0.05 and window.errors() == []
 
 
+@pytest.mark.nightly
 def test_each_module_that_turns_by_itself_has_a_slider_of_its_angle(window, own_page):
     window.open(own_page / "laconic.html", prefers_reduced_motion="reduce")
     choose(window, "servo")
@@ -242,6 +245,7 @@ def test_each_module_that_turns_by_itself_has_a_slider_of_its_angle(window, own_
     assert [round(float(each.partition("°")[0])) for each in angles(window)] == [0, 0, 29, 0]
 
 
+@pytest.mark.nightly
 def test_one_module_that_is_straightened_lets_all_wheels_hold(page, tmp_path):
     page.choose("robot", "swerve_module_off")
     step(page, 20)
@@ -299,6 +303,7 @@ def test_a_swerve_goes_aside_and_back_without_turning_its_wheels_by_a_half_turn(
     assert angles(page) == before
 
 
+@pytest.mark.nightly
 def test_keys_drive_and_steer_while_they_are_held(page):
     choose(page, "tugger_train")
     page.click("stage")
