@@ -18,13 +18,13 @@ from laconic.can.play.protocols import ORDERS
 from laconic.can.play.senders import Senders
 from laconic.can.play.session import play
 from laconic.can.play.settings import drive_settings
-from laconic.can.rig.buses import next_channel, node_process
+from laconic.can.rig.buses import node_process
 from laconic.can.rig.faults import error_frame
 from laconic.can.rig.logs import read_log
 from laconic.can.rig.verdict import Judgement
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
-from play_support import DBC, PLAY, Codec, Controller, Station, currents, played, unhurried
+from play_support import DBC, PLAY, Codec, Controller, Station, currents, next_channel, played, unhurried
 
 FOR_EVER = 10**6
 

@@ -16,7 +16,7 @@ import pytest
 from laconic.base.paths import built
 from laconic.can.rig.boards import free_port, own_node
 from laconic.can.rig.bus_options import known_options, read_bus_options
-from laconic.can.rig.buses import connected, next_channel, node_process
+from laconic.can.rig.buses import connected, node_process
 from laconic.can.rig.faults import faults_from
 from laconic.can.rig.free_judge import judge_free_run
 from laconic.can.rig.judge import judge_same_bits, judge_scaled
@@ -27,6 +27,7 @@ from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
 from laconic.scene import read_scene
 from laconic.scene.methods import EXACT_4
+from play_support import next_channel
 from scene_text import wheel
 
 NU = wire()["NU"].offset

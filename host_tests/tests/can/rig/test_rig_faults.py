@@ -10,7 +10,7 @@ import can
 import pytest
 
 from fault_matrix import FAULTS, WHOLE_BUS, Row, frames_for, run_case, run_matrix, summary
-from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
+from laconic.can.rig.buses import NodeOnBus, VirtualClock
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.faulty import FaultyBus
 from laconic.can.rig.link import Link
@@ -19,6 +19,7 @@ from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.scaled import Voltages
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
+from play_support import next_channel
 
 FIXED_SEED = 20111125
 
