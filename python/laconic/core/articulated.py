@@ -341,9 +341,13 @@ class ArticulatedPlant(OwnMemory):
 
     def motion(self) -> ArticulatedMotion:
         """Velocities, pose, hinges, poses of bodies, wheels and energy of this moment."""
+        return ArticulatedMotion(**self._values(self.c_motion(), ArticulatedMotion))
+
+    def c_motion(self) -> Any:
+        """The same as a laconic_articulated_motion, for callers that read a few of its members in every step."""
         found = self.core.ffi.new("laconic_articulated_motion *")
         self.core.lib.laconic_articulated_motion_of(found, self.vehicle.model, self.c)
-        return ArticulatedMotion(**self._values(found, ArticulatedMotion))
+        return found
 
     def reactions(self, inputs: Any = None, normal_N: Sequence[float] | np.ndarray | None = None
                   ) -> ArticulatedReactions:

@@ -275,15 +275,24 @@ class SlippingPlant(OwnMemory):
         """Velocities, pose, hinges, poses of bodies, wheels and energy of this moment."""
         return self.outputs().motion
 
+    def c_motion(self) -> Any:
+        """The same as a laconic_articulated_motion, for callers that read a few of its members in every step."""
+        found = self._c_outputs()  # its member does not keep it
+        return self.core.ffi.new("laconic_articulated_motion *", found.motion)
+
     def outputs(self) -> SlippingOutputs:
         """Motion of this moment, and what the last step did: slips, forces, loads, drives and the energy book."""
-        found = self.core.ffi.new("laconic_tree_outputs *")
-        self.core.lib.laconic_tree_outputs_of(found, self.vehicle.model, self.c)
+        found = self._c_outputs()
         values = {name: self._value(name, getattr(found, name)) for name in SlippingOutputs.__dataclass_fields__
                   if name != "motion"}
         motion = {name: self._value(name, getattr(found.motion, name))
                   for name in ArticulatedMotion.__dataclass_fields__}
         return SlippingOutputs(motion=ArticulatedMotion(**motion), **values)
+
+    def _c_outputs(self) -> Any:
+        found = self.core.ffi.new("laconic_tree_outputs *")
+        self.core.lib.laconic_tree_outputs_of(found, self.vehicle.model, self.c)
+        return found
 
     def _value(self, name: str, value: Any) -> Any:
         if not isinstance(value, self.core.ffi.CData):

@@ -32,7 +32,8 @@ from laconic.scene.ground import slips
 from laconic.scene.scene_tables import scene_tables
 from laconic.simulation import simulate
 
-WITH_HINGES = [name for name in scene_names() if name not in rigid_scene_names()]
+RIGID = rigid_scene_names()
+WITH_HINGES = [name for name in scene_names() if name not in RIGID]
 ON_FRICTION = tuple(name for name in WITH_HINGES if slips(read_scene(name).vehicle))
 HINGED = tuple(name for name in WITH_HINGES if name not in ON_FRICTION)
 SELDOM = pytest.mark.nightly
