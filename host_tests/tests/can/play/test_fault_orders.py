@@ -87,7 +87,7 @@ def test_drives_of_a_process_behind_a_line_of_its_own_fail_on_any_interface(kind
         with can.Bus(interface="virtual", channel=name), Station("virtual", lambda: name, FOR_EVER) as station:
             station.may_begin.set()
             judgement = play(read_scene("robotino2"), PlayOptions(
-                interface="virtual", channel=name, board="process", drives="robomaster", duration_s=1.5 * longer,
+                interface="virtual", channel=name, board="process", drives="robomaster", duration_s=0.9 * longer,
                 faults=(f"{kind}:2@{0.3 * longer:g}",), logs=(log,)))  # where a machine is busy, orders come late
         return judgement, station
 
