@@ -132,7 +132,7 @@ def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[st
             least, largest = min(values), max(values)
             scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
             spread[label] = max(spread.get(label, 0.0), largest - least)
-            slack = rounding_limit(raw[name], dtype) + spread[label]
+            slack = float(rounding_limit(raw[name], dtype)) + spread[label]
             slack += tolerances.get(label, tolerances.get(name, 0.0)) / scale
             beyond = max(least - slack - raw[name], raw[name] - largest - slack)
             off = min(abs(value - raw[name]) for value in values) * scale
