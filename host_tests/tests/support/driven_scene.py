@@ -16,9 +16,10 @@ from laconic.can.play.node_in_process import InProcess
 from laconic.can.play.node_vehicle import running
 from laconic.can.play.settings import drive_settings
 from laconic.can.play.vehicle import played
-from laconic.can.rig.buses import VirtualClock, next_channel, node_in_process
+from laconic.can.rig.buses import VirtualClock, node_in_process
 from laconic.core import load
 from laconic.scene import read_scene
+from play_support import next_channel
 
 PATIENCE_STEPS = 5000
 

@@ -9,7 +9,7 @@ zero, that it moves only while it runs. What remains undetected is counted.
 from __future__ import annotations
 
 import random
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ from typing import Any
 import can
 import numpy as np
 
-from laconic.can.rig.buses import NodeOnBus, VirtualClock
+from laconic.can.rig.buses import NodeOnBus, VirtualClock, paired_buses
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.faults import Faults
 from laconic.can.rig.faulty import FaultyBus
@@ -135,40 +135,6 @@ class WatchedNode(NodeOnBus):
         if view["state"] == "timeout" and before["state"] == "free run":
             self.row.detected_by["timeout"] += 1
         self.view = view
-
-
-# ---- Two ends of a bus in one thread, for cases by the hundred in virtual time: python-can's virtual bus copies
-# each frame deeply and locks a queue for each look at it.
-
-class PairedBus(can.BusABC):
-    """One end; what it sends waits at the other, and a look at it never blocks."""
-
-    channel_info = "paired bus"
-
-    def __init__(self) -> None:
-        super().__init__(channel=self.channel_info)
-        self._arrived: deque[can.Message] = deque()
-        self._other = self
-
-    def join(self, other: PairedBus) -> None:
-        """From now on they are two ends of the same bus."""
-        self._other, other._other = other, self
-
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """The frame is at the other end at once; neither end changes it."""
-        self._other._arrived.append(msg)
-
-    def recv(self, timeout: float | None = None) -> can.Message | None:
-        """The next frame; None where none waits, whatever the timeout: no other thread could send one meanwhile."""
-        return self._arrived.popleft() if self._arrived else None
-
-
-@contextmanager
-def paired_buses() -> Iterator[tuple[PairedBus, PairedBus]]:
-    """Both ends of one bus."""
-    with PairedBus() as near, PairedBus() as far:
-        near.join(far)
-        yield near, far
 
 
 SCENE = "s1"

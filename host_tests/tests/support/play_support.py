@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 import threading
 import time
@@ -16,7 +17,7 @@ from crccheck.crc import Crc8SaeJ1850
 
 from laconic.can.play.options import PlayOptions
 from laconic.can.play.session import play
-from laconic.can.rig.buses import VirtualClock, next_channel, open_bus
+from laconic.can.rig.buses import VirtualClock, open_bus
 from laconic.can.rig.verdict import Judgement
 from laconic.scene import Scene, read_scene
 
@@ -25,6 +26,12 @@ DBC = PLAY / "transporter.dbc"
 PERIOD_US = 10_000
 CURRENTS = 0x200          # a command of a C620 group
 AMPERE = 16384 / 20.0     # of its currents
+_channel_numbers = itertools.count()
+
+
+def next_channel() -> str:
+    """A channel name that no other virtual bus has."""
+    return f"laconic-{next(_channel_numbers)}"
 
 
 class Controller:

@@ -384,11 +384,16 @@ class ArticulatedPlant(OwnMemory):
         """The same into a laconic_articulated_motion, which `ArticulatedVehicle.motion_of` reads."""
         self.core.lib.laconic_articulated_motion_of(found, self.vehicle.model, self.c)
 
-    def hinge_angles(self) -> list[float]:
-        """The angles of `motion` alone."""
+    def c_motion(self) -> Any:
+        """The same as a laconic_articulated_motion, for callers that read a few of its members in every step."""
         found = self.core.ffi.new(f"{MOTION} *")
         self.see_motion(found)
-        return [float(angle) for angle in self.core.ffi.unpack(found.hinge_angle_rad, self.vehicle.body_count)]
+        return found
+
+    def hinge_angles(self) -> list[float]:
+        """The angles of `motion` alone."""
+        angles = self.core.ffi.unpack(self.c_motion().hinge_angle_rad, self.vehicle.body_count)
+        return [float(angle) for angle in angles]
 
     def reactions(self, inputs: Any = None, normal_N: Sequence[float] | np.ndarray | None = None
                   ) -> ArticulatedReactions:

@@ -288,6 +288,12 @@ class SlippingPlant(OwnMemory):
         """Velocities, pose, hinges, poses of bodies, wheels and energy of this moment."""
         return self.outputs().motion
 
+    def c_motion(self) -> Any:
+        """The same as a laconic_articulated_motion, for callers that read a few of its members in every step."""
+        found = self.core.ffi.new(f"{OUTPUTS} *")
+        self.see_outputs(found)
+        return self.core.ffi.new("laconic_articulated_motion *", found.motion)  # a member alone would not keep it
+
     def outputs(self) -> SlippingOutputs:
         """Motion of this moment, and what the last step did: slips, forces, loads, drives and the energy book."""
         found = Structs(self.core, OUTPUTS, 1)

@@ -19,7 +19,7 @@ from laconic.base.paths import SOURCE_DIR, as_path, built
 from laconic.can.play.node_vehicle import remedy
 from laconic.can.play.settings import DriveSettings, drive_parameters, drive_settings
 from laconic.can.play.vehicle import check_playable, played
-from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
+from laconic.can.rig.buses import NodeOnBus, VirtualClock, paired_buses
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import NodeRefused
 from laconic.can.rig.link import Link
@@ -62,8 +62,8 @@ class RecordedNode(NodeOnBus):
 @contextmanager
 def recorded_node() -> Iterator[tuple[NodeClient, RecordedNode]]:
     """A client of a node as after power-up, at time 0, and the node."""
-    channel, clock = next_channel(), VirtualClock()
-    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+    clock = VirtualClock()
+    with paired_buses() as (ours, its):
         node = RecordedNode(LibraryNode("double"), its, clock)
         yield LoadingClient(Link(ours, clock=clock, pump=node.pump), random_bits=lambda _: SESSION), node
         assert clock.time_us == 0

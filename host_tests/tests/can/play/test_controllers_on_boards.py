@@ -26,13 +26,15 @@ STEP_S = 0.005
 PATIENCE_S = 10.0
 
 
+@pytest.mark.parametrize("cycles", [80, pytest.param(200, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("protocol", CONTROLLERS)
-def test_controllers_drive_a_process_and_its_wheels_move_as_the_core_with_its_torques(protocol: str) -> None:
+def test_controllers_drive_a_process_and_its_wheels_move_as_the_core_with_its_torques(
+        protocol: str, cycles: int) -> None:
     if protocol == "odrive":
         pytest.importorskip("odrive_can", reason="odrive-can needs Python 3.11")
-    verdict = run(protocol, "process", 200, STEP_S)
+    verdict = run(protocol, "process", cycles, STEP_S)
     passed = re.match(r"passed: (\d+) cycles", verdict)  # a busy machine takes more to see all steps
-    assert passed and int(passed[1]) >= 200, verdict
+    assert passed and int(passed[1]) >= cycles, verdict
 
 
 class Told:
@@ -132,7 +134,7 @@ def check_faults(it: Bench, nodes: list[Any]) -> None:
     assert hot.sdo["Statusword"].raw & 0x4F == 0x40 and faults[0].has(0)
 
 
-@pytest.mark.parametrize("board", [pytest.param("an386", marks=emulated), "virtual"])
+@pytest.mark.parametrize("board", [pytest.param("an386", marks=[emulated, pytest.mark.nightly]), "virtual"])
 def test_faults_by_order_of_a_boards_drives_reach_an_unchanged_canopen_client(board: str) -> None:
     with bench(by_canopen.SCENE, "canopen", board, STEP_S, stall_time_s=0.1, current_limit_A=1.0) as it, \
             by_canopen.network_of(it) as (_, nodes):

@@ -18,13 +18,13 @@ from laconic.can.play.protocols import ORDERS
 from laconic.can.play.senders import Senders
 from laconic.can.play.session import play
 from laconic.can.play.settings import drive_settings
-from laconic.can.rig.buses import next_channel, node_process
+from laconic.can.rig.buses import node_process
 from laconic.can.rig.faults import error_frame
 from laconic.can.rig.logs import read_log
 from laconic.can.rig.verdict import Judgement
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
-from play_support import DBC, PLAY, Codec, Controller, Station, currents, played, unhurried
+from play_support import DBC, PLAY, Codec, Controller, Station, currents, next_channel, played, unhurried
 
 FOR_EVER = 10**6
 
@@ -87,7 +87,7 @@ def test_drives_of_a_process_behind_a_line_of_its_own_fail_on_any_interface(kind
         with can.Bus(interface="virtual", channel=name), Station("virtual", lambda: name, FOR_EVER) as station:
             station.may_begin.set()
             judgement = play(read_scene("robotino2"), PlayOptions(
-                interface="virtual", channel=name, board="process", drives="robomaster", duration_s=1.5 * longer,
+                interface="virtual", channel=name, board="process", drives="robomaster", duration_s=0.9 * longer,
                 faults=(f"{kind}:2@{0.3 * longer:g}",), logs=(log,)))  # where a machine is busy, orders come late
         return judgement, station
 

@@ -55,11 +55,12 @@ class Client:
         await self.scene.during(asyncio.gather(*(each.set_axis_state("CLOSED_LOOP_CONTROL") for each in self.drives)))
 
 
-def test_odrive_can_drives_four_wheels_for_10000_cycles_and_the_core_agrees_bit_for_bit():
+@pytest.mark.parametrize("cycles", [2000, pytest.param(10_000, marks=pytest.mark.nightly)])
+def test_odrive_can_drives_four_wheels_and_the_core_agrees_bit_for_bit(cycles: int):
     async def control(scene: DrivenScene) -> None:
         async with Client(scene) as client:
             await client.close_loop()
-            for cycle in range(10_000):
+            for cycle in range(cycles):
                 client.drives[cycle % WHEELS].set_input_vel(20.0 * math.sin(TURN * cycle / 5000.0))
                 scene.step()
                 await asyncio.sleep(0)
@@ -73,7 +74,7 @@ def test_odrive_can_drives_four_wheels_for_10000_cycles_and_the_core_agrees_bit_
 
     with driven_scene(SCENE, "odrive") as scene:
         asyncio.run(control(scene))
-        assert scene.steps > 12_000
+        assert scene.steps > cycles + 2000
         assert all(abs(scene.drive(wheel).wheel_angle_rad) > 1.0 for wheel in range(WHEELS))
 
 
@@ -222,6 +223,7 @@ class Lent:
         """Left to its owner."""
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 def test_odrive_can_drives_a_board_that_has_no_other_protocol():
     """An emulated Cortex-M4F behind a serial line, 200 periods a second by its own clock."""

@@ -178,8 +178,9 @@ def test_slipping_wheels_and_axes_take_the_steps_of_the_core_with_the_torques_of
 
 
 @pytest.mark.parametrize("kind, hinge", [
-    ("servo", {}), ("coordinated", {}), ("coordinated", SERVO), ("prescribed", {}),
-    ("motor", {"steering_gain_Nm_per_V": 0.5, "steering_damping_Nms": 0.1}),
+    ("servo", {}), ("coordinated", SERVO), *(pytest.param(*each, marks=pytest.mark.nightly) for each in (
+        ("coordinated", {}), ("prescribed", {}),
+        ("motor", {"steering_gain_Nm_per_V": 0.5, "steering_damping_Nms": 0.1}))),
     ("motor", {"steering_gain_Nm_per_V": 0.5, "loop_V_per_rad": 30.0, "loop_Vs_per_rad": 1.0})])
 def test_drives_steer_a_swerve_that_slips_whatever_turned_its_modules(kind: str, hinge: dict[str, Any],
                                                                     tmp_path: Path) -> None:

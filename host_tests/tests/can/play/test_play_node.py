@@ -15,13 +15,13 @@ from laconic.can.play.options import PlayOptions
 from laconic.can.play.protocols import PROTOCOLS
 from laconic.can.play.session import play
 from laconic.can.play.settings import drive_settings
-from laconic.can.rig.buses import connected, next_channel, node_in_process, node_process, open_bus
+from laconic.can.rig.buses import connected, node_in_process, node_process, open_bus
 from laconic.can.rig.logs import read_log
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.scene import read_scene
-from play_support import CURRENTS, Station, currents, played
+from play_support import CURRENTS, Station, currents, next_channel, played
 
 FIRST_FEEDBACK = 0x201
 

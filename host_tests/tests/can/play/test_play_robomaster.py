@@ -16,7 +16,7 @@ from laconic.base.paths import SOURCE_DIR
 from laconic.can.play.settings import drive_parameters, drive_settings
 from laconic.can.play.vehicle import played
 from laconic.can.rig.boards import own_node, why_no_emulation
-from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
+from laconic.can.rig.buses import NodeOnBus, VirtualClock, paired_buses
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.errors import NodeRefused
 from laconic.can.rig.link import Link
@@ -73,8 +73,8 @@ class Bench:
 @contextmanager
 def bench(real: str = "double") -> Iterator[tuple[Bench, can.BusABC]]:
     """The bench, and the controller's end of the bus."""
-    scene, channel, clock = played(read_scene("robomaster_mecanum").with_run(real=real)), next_channel(), VirtualClock()
-    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+    scene, clock = played(read_scene("robomaster_mecanum").with_run(real=real)), VirtualClock()
+    with paired_buses() as (ours, its):
         end = NodeOnBus(LibraryNode(real), its, clock)
         yield Bench(NodeClient(Link(ours, ID_BASE, clock=clock, pump=end.pump)), end, scene), ours
 

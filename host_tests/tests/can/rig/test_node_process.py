@@ -148,10 +148,10 @@ def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
 @pytest.mark.parametrize("compiler", [
     pytest.param(each, marks=[pytest.mark.nightly] if each != COMPILERS[0] else []) for each in COMPILERS])
 @pytest.mark.parametrize("definitions", [
-    (), ("LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_ESTIMATE=1", "LACONIC_NODE_WITH_XCP=1"),
+    ("LACONIC_NODE_WITH_HINGES=1", "LACONIC_NODE_WITH_ESTIMATE=1", "LACONIC_NODE_WITH_XCP=1"),
     ("LACONIC_SINGLE", "LACONIC_NODE_CAN_FD=0", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=1"),
     *(pytest.param(each, marks=pytest.mark.nightly) for each in (
-        ("LACONIC_MAX_WHEELS=24", "LACONIC_NODE_WITH_SENSORS=0"),
+        (), ("LACONIC_MAX_WHEELS=24", "LACONIC_NODE_WITH_SENSORS=0"),
         ("LACONIC_NODE_WITH_DRIVES=0", "LACONIC_WITH_AXLE_TORQUE=0"),
         ("LACONIC_NODE_WITH_SENSORS=0",), ("LACONIC_NODE_WITH_ESTIMATE=1",),
         ("LACONIC_NODE_WITH_SENSORS=0", "LACONIC_NODE_WITH_ESTIMATE=1", "LACONIC_NODE_WITH_DRIVES=0"),

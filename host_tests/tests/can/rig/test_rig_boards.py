@@ -27,15 +27,15 @@ FULL = [name for name in BOARDS if "-" not in name]
 WITH_ONE_PROTOCOL = ("an386-drives", "an386-odrive", "an386-canopen", "an386-moteus")
 STEPS = {"an385": 4000, "microbit": 2000}  # without floating-point hardware; the others take 10,000
 STEPS_PER_SYNC = 500
-ALL_STEPS = pytest.param(1, marks=pytest.mark.nightly)
-SELDOM = ("an385", "an500", "an500-hinges")  # whose images the ordinary build leaves out
+SELDOM = ("an385", "an500", "an500-hinges", "an386-xcp", "an386-odrive", "an386-canopen",
+          "an386-moteus")  # whose images the ordinary build leaves out
 MASS = wire().number("PARAMETER", "field", "MASS")
 # what a whole load of nothing but masses is refused for; a board in double misses the upper halves first
 UNFIT = dict.fromkeys(FULL, "parameter missing") | {"an500": "input incomplete"}
 
 
-def each(names: Iterable[str]) -> list[Any]:
-    return [pytest.param(name, marks=pytest.mark.nightly) if name in SELDOM else name for name in names]
+def each(names: Iterable[str], by_day: Iterable[str] = frozenset(BOARDS) - frozenset(SELDOM)) -> list[Any]:
+    return [name if name in by_day else pytest.param(name, marks=pytest.mark.nightly) for name in names]
 
 
 def fits_small_image(scene: Scene) -> bool:
@@ -55,11 +55,14 @@ def rk4_can(scene: Scene) -> bool:
     return True
 
 
-@pytest.mark.parametrize("share", [25, ALL_STEPS], ids=["one step in 25", "all steps"])
+@pytest.mark.parametrize("share, names", [
+    (25, rigid_scene_names()[::4]), pytest.param(1, rigid_scene_names(), marks=pytest.mark.nightly)],
+    ids=["one step in 25, one scene in four", "all steps"])
 @pytest.mark.parametrize("name", each(FULL))
-def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str, share: int) -> None:
+def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(
+        name: str, share: int, names: list[str]) -> None:
     with emulated_node(name) as node:
-        for scene_name in rigid_scene_names():
+        for scene_name in names:
             scene = read_scene(scene_name).with_run(real=BOARDS[name].real)
             if name == "microbit" and has_friction(scene.vehicle):  # left out of that image
                 continue
@@ -70,13 +73,13 @@ def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: st
 
 
 @pytest.mark.parametrize("busy", [0, pytest.param(2, marks=pytest.mark.nightly)], ids=["idle", "busy"])
-@pytest.mark.parametrize("name", each(BOARDS))
+@pytest.mark.parametrize("name", each(BOARDS, by_day=("an386", "microbit")))
 def test_a_board_that_has_just_been_started_loads_a_vehicle_at_once(name: str, busy: int) -> None:
     with busy_cores(busy):
         assert start(name, "kuka_youbot") is None
 
 
-@pytest.mark.parametrize("name", each(FULL))
+@pytest.mark.parametrize("name", each(FULL, by_day=("an386",)))
 def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(name: str) -> None:
     """A long SYNC keeps it busy while twelve times its ring arrives at once; the checksum counts what it has read."""
     with emulated_node(name) as node:
@@ -108,10 +111,11 @@ def test_the_small_image_gives_the_bits_of_the_host_core_with_its_one_method() -
         scenes = [scene for scene in scenes if fits_small_image(scene) and rk4_can(scene)]
         assert len(scenes) >= 3
         for scene in scenes:
-            run = run_lockstep(node, scene, 1000, every=STEPS_PER_SYNC)
+            run = run_lockstep(node, scene, 500, every=STEPS_PER_SYNC)
             assert run.states.tobytes() == twin_states(scene, run).tobytes(), scene.name
 
 
+@pytest.mark.nightly
 def test_one_command_and_one_answer_a_step_run_at_150_steps_a_second_or_more() -> None:
     scene = read_scene("turtlebot3_burger").with_run(real="single")
     scene = Scene(**{**vars(scene), "rig": type(scene.rig)(frames=("NU",))})
@@ -146,7 +150,7 @@ def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_sma
     assert of["an386"].instructions["on_tick_with_step"] < 850  # without sensors nobody looks for them
 
 
-@pytest.mark.parametrize("name", [name for name, board in BOARDS.items() if board.plays_only])
+@pytest.mark.parametrize("name", each(name for name, board in BOARDS.items() if board.plays_only))
 def test_an_image_that_only_plays_drives_says_that_it_has_no_lockstep(name: str) -> None:
     with emulated_node(name) as node, pytest.raises(NodeRefused, match="not supported"):
         run_lockstep(node, read_scene("kuka_youbot").with_run(real="single", method=EXPLICIT), 10)

@@ -32,13 +32,19 @@ from laconic.scene.ground import slips
 from laconic.scene.scene_tables import scene_tables
 from laconic.simulation import simulate
 
-WITH_HINGES = [name for name in scene_names() if name not in rigid_scene_names()]
+RIGID = rigid_scene_names()
+WITH_HINGES = [name for name in scene_names() if name not in RIGID]
 ON_FRICTION = tuple(name for name in WITH_HINGES if slips(read_scene(name).vehicle))
 HINGED = tuple(name for name in WITH_HINGES if name not in ON_FRICTION)
 SELDOM = pytest.mark.nightly
-EACH_ONCE = [pytest.param(name, REALS[k % 2], marks=[SELDOM] if k % 2 != number % 2 else [])
-             for number, name in enumerate(HINGED) for k in range(2)]
-"""Every scene in both scalar types; in the ordinary run each in one, by turns."""
+
+
+def each_once(names: tuple[str, ...]) -> list[Any]:
+    """Every scene in both scalar types; in the ordinary run each in one, by turns."""
+    return [pytest.param(name, real, marks=[SELDOM] if k != number % 2 else [])
+            for number, name in enumerate(names) for k, real in enumerate(REALS)]
+
+
 SIGNALS = {"pose": ("x_m", "y_m", "heading_rad"), "velocity": ("velocity_body_m_per_s", "yaw_rate_rad_per_s"),
            "wheel_speed": ("wheel_speed_rad_per_s",), "wheel_angle": ("wheel_angle_rad",),
            "hinge_angle": ("hinge_angle_rad",), "hinge_rate": ("hinge_rate_rad_per_s",)}
@@ -87,8 +93,7 @@ def test_the_project_has_the_eight_scenes() -> None:
     assert len(HINGED) == 8
 
 
-@pytest.mark.parametrize("real", REALS)
-@pytest.mark.parametrize("name", HINGED + ON_FRICTION)
+@pytest.mark.parametrize("name, real", each_once(HINGED + ON_FRICTION))
 def test_the_node_gives_the_bits_of_simulate_where_wheels_slip(name: str, real: str) -> None:
     scene = shortened(name, real, 150) if name in ON_FRICTION else slipping(name, real, 150)
     with virtual_node(real) as node:
@@ -134,9 +139,10 @@ def test_servos_loops_stops_hitches_scrub_and_creep_have_the_bits_of_simulate(re
         assert judge_scaled(node, scene, scene.steps(), {}).passed
 
 
-@pytest.mark.parametrize("name, real", EACH_ONCE)
-def test_the_node_gives_the_bits_of_simulate(name: str, real: str) -> None:
-    scene = shortened(name, real, 700)
+@pytest.mark.parametrize("steps", [200, pytest.param(700, marks=SELDOM)])
+@pytest.mark.parametrize("name, real", each_once(HINGED))
+def test_the_node_gives_the_bits_of_simulate(name: str, real: str, steps: int) -> None:
+    scene = shortened(name, real, steps)
     with virtual_node(real) as node:
         assert_bits_of_simulate(run_lockstep(node, scene, fd=True), scene)
 
@@ -149,29 +155,33 @@ def test_the_node_process_gives_them_on_classic_can(name: str) -> None:
 
 
 @pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
-@pytest.mark.parametrize("board", ["an386-hinges", pytest.param("an500-hinges", marks=pytest.mark.nightly)])
-def test_an_emulated_board_gives_them_for_all_eight(board: str) -> None:
+@pytest.mark.parametrize("board, names", [
+    ("an386-hinges", HINGED[::3]), *(pytest.param(board, HINGED, marks=SELDOM) for board in (
+        "an386-hinges", "an500-hinges"))], ids=["an386-hinges, three", "an386-hinges", "an500-hinges"])
+def test_an_emulated_board_gives_them(board: str, names: tuple[str, ...]) -> None:
     real = BOARDS[board].real
     with emulated_node(board) as node:
-        for name in HINGED:
+        for name in names:
             scene = shortened(name, real, 12)
             assert_bits_of_simulate(run_lockstep(node, scene), scene)
 
 
 @pytest.mark.skipif(why_no_emulation() is not None, reason=str(why_no_emulation()))
-def test_an_emulated_board_gives_them_where_wheels_slip() -> None:
+@pytest.mark.parametrize("names", [(), pytest.param(HINGED[:2], marks=SELDOM)], ids=["one", "three"])
+def test_an_emulated_board_gives_them_where_wheels_slip(names: tuple[str, ...]) -> None:
     with emulated_node("an386-slip") as node:
         assert_bits_of_simulate(run_lockstep(node, equipped("single", 60)), equipped("single", 60))
-        for name in HINGED[:2]:
+        for name in names:
             scene = slipping(name, "single", 20)
             assert_bits_of_simulate(run_lockstep(node, scene), scene)
 
 
-@pytest.mark.parametrize("name, real", EACH_ONCE)
-def test_scaled_frames_agree_to_half_a_last_place(name: str, real: str) -> None:
+@pytest.mark.parametrize("steps", [200, pytest.param(500, marks=SELDOM)])
+@pytest.mark.parametrize("name, real", each_once(HINGED))
+def test_scaled_frames_agree_to_half_a_last_place(name: str, real: str, steps: int) -> None:
     scene = read_scene(name).with_run(real=real)
     with virtual_node(real) as node:
-        judgement = judge_scaled(node, scene, 500, {})
+        judgement = judge_scaled(node, scene, steps, {})
     assert judgement.passed, judgement.verdicts
     assert {"VELOCITY.ahead", "HINGE_ANGLE.hinge_angle_1"} <= {verdict.name for verdict in judgement.verdicts}
 
@@ -180,7 +190,7 @@ def test_every_frame_of_a_vehicle_with_hinges_is_judged() -> None:
     frames = ["VELOCITY", "POSE", "WHEEL_SPEED", "WHEEL_ANGLE", "HINGE_ANGLE", "HINGE_RATE"]
     scene = build_scene(tables_of("tugger_train", rig={"frames": frames}))
     with virtual_node() as node:
-        judgement = judge_scaled(node, scene, 900, {})
+        judgement = judge_scaled(node, scene, 700, {})
     assert judgement.passed, judgement.verdicts
     assert {verdict.name.partition(".")[0] for verdict in judgement.verdicts} == {*frames, "frames", "range"}
     assert {"HINGE_ANGLE.hinge_angle_4", "HINGE_RATE.hinge_rate_4"} <= {each.name for each in judgement.verdicts}
@@ -191,16 +201,16 @@ def test_the_command_judges_them_like_every_scene(capsys: pytest.CaptureFixture[
     assert "same bits in 40 answers" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", ["f1tenth", *(pytest.param(each, marks=SELDOM) for each in (
-    "tricycle_agv", "tugger_train", "wheelchair"))])
-def test_a_log_is_judged_again(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("name, steps", [("f1tenth", 400), *(pytest.param(each, 900, marks=SELDOM) for each in (
+    "f1tenth", "tricycle_agv", "tugger_train", "wheelchair"))])
+def test_a_log_is_judged_again(name: str, steps: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = tmp_path / "run.blf"
-    first = json.loads(shown(capsys, ["rig", name, "--steps", "900", "--log", str(log), "--json"]))
+    first = json.loads(shown(capsys, ["rig", name, "--steps", str(steps), "--log", str(log), "--json"]))
     again = json.loads(shown(capsys, ["rig", name, "--replay", str(log), "--json"]))
     worst = {each["name"]: each["worst"] for each in first["verdicts"]}
     assert again["passed"] and all(worst[each["name"]] == each["worst"] for each in again["verdicts"]
                                    if "." in each["name"])
-    assert again["figures"]["steps"] == 900
+    assert again["figures"]["steps"] == steps
 
 
 def shown(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
@@ -217,17 +227,18 @@ def test_a_car_whose_origin_is_off_its_axle_is_steered_by_whole_numbers() -> Non
     for real in REALS:
         scene = build_scene(tables).with_run(real=real)
         with virtual_node(real) as node:
-            judgement = judge_scaled(node, scene, 800, {})
+            judgement = judge_scaled(node, scene, 400, {})
         assert judgement.passed, judgement.verdicts
 
 
-@pytest.mark.parametrize("name, real", [("f1tenth", "double"), ("tricycle_agv", "single"),
-                                        pytest.param("mir_like", "double", marks=SELDOM),
-                                        pytest.param("tugger_train", "double", marks=SELDOM)])
-def test_a_free_run_lies_between_vehicles_with_every_possible_delay(name: str, real: str) -> None:
+@pytest.mark.parametrize("name, real, duration_s", [
+    ("f1tenth", "double", 2.5), ("tricycle_agv", "single", 2.0), *(pytest.param(*each, marks=SELDOM) for each in (
+        ("f1tenth", "double", 4.0), ("tricycle_agv", "single", 4.0), ("mir_like", "double", 4.0),
+        ("tugger_train", "double", 9.0)))])
+def test_a_free_run_lies_between_vehicles_with_every_possible_delay(name: str, real: str, duration_s: float) -> None:
     scene = read_scene(name).with_run(real=real)
     with virtual_node(real) as node:
-        judgement = judge_free_run(node, scene, 9.0 if name == "tugger_train" else 4.0, 0, 100, {})
+        judgement = judge_free_run(node, scene, duration_s, 0, 100, {})
     assert judgement.passed, judgement.verdicts
     assert {"VELOCITY.ahead", "HINGE_ANGLE.hinge_angle_1"} <= {verdict.name for verdict in judgement.verdicts}
 

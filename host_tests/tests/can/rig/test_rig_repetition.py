@@ -9,7 +9,7 @@ from random import Random
 import can
 import pytest
 
-from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
+from laconic.can.rig.buses import NodeOnBus, VirtualClock, paired_buses
 from laconic.can.rig.client import REPEAT_S, NodeClient
 from laconic.can.rig.errors import CannotReach, NodeRefused, NodeSilent
 from laconic.can.rig.link import Link
@@ -47,8 +47,8 @@ class LossyNode(NodeOnBus):
 @contextmanager
 def lossy(timeout_s: float = 1.0) -> Iterator[tuple[NodeClient, LossyNode]]:
     """A client and a node with a wire between them that may lose what a test chooses."""
-    channel, clock = next_channel(), VirtualClock()
-    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+    clock = VirtualClock()
+    with paired_buses() as (ours, its):
         end = LossyNode(LibraryNode("double"), its, clock)
         yield NodeClient(Link(ours, clock=clock, pump=end.pump), timeout_s), end
 
@@ -186,8 +186,8 @@ class SlowNode(LossyNode):
 
 
 def test_a_late_answer_is_not_taken_for_that_to_the_next_command() -> None:
-    channel, clock = next_channel(), VirtualClock()
-    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+    clock = VirtualClock()
+    with paired_buses() as (ours, its):
         end = SlowNode(LibraryNode("double"), its, clock)
         client = NodeClient(Link(ours, clock=clock, pump=end.pump))
         client.open()

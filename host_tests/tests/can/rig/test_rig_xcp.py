@@ -23,14 +23,17 @@ import pytest
 from laconic.base.paths import SOURCE_DIR
 from laconic.can.rig.a2l import EACH, OUTPUTS, PARAMETERS, SEGMENT, a2l_text, outputs, parameters
 from laconic.can.rig.boards import own_node, why_no_emulation
-from laconic.can.rig.buses import NodeOnBus, connected, node_in_process, node_process
+from laconic.can.rig.buses import NodeOnBus, VirtualClock, connected, node_process
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.free_judge import judge_free_run
+from laconic.can.rig.link import Link
 from laconic.can.rig.lockstep import load_scene
+from laconic.can.rig.node_library import LibraryNode
 from laconic.can.rig.wire import ID_BASE, wire
 from laconic.cli.main import run
 from laconic.scene import Scene, read_scene
 from laconic.scene.methods import EXPLICIT
+from play_support import next_channel
 
 SCENE = read_scene("s1").with_run(step_s=0.001, method=EXPLICIT)
 COMMAND, RESPONSE = (ID_BASE + wire().xcp[name].offset for name in ("XCP_COMMAND", "XCP_RESPONSE"))
@@ -395,14 +398,16 @@ def check_samples(rows: list[tuple[Any, ...]], samples: int) -> None:
 
 def test_pyxcp_calibrates_and_measures_60_s_on_the_virtual_bus() -> None:
     pytest.importorskip("pyxcp")
-    with node_in_process() as (node, end):
+    channel, clock, ended = next_channel(), VirtualClock(), threading.Event()
+    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+        end = NodeOnBus(LibraryNode("double"), its, clock)
+        node = NodeClient(Link(ours, clock=clock, pump=end.pump))
         load_scene(node, SCENE)
         node.start_free_run(watchdog_ms=0)
-        ended = threading.Event()
         pump = threading.Thread(target=pump_until, args=(ended, node, end))
         pump.start()
         try:
-            check_samples(calibrate_and_measure("virtual", str(end.bus.channel_info).split()[-1], 6000), 6000)
+            check_samples(calibrate_and_measure("virtual", channel, 6000), 6000)
         finally:
             ended.set()
             pump.join()

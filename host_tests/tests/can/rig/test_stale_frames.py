@@ -9,13 +9,12 @@ import random
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import can
 import crccheck
 import e2e.p02
 import e2e.p05
 import pytest
 
-from laconic.can.rig.buses import NodeOnBus, VirtualClock, next_channel
+from laconic.can.rig.buses import NodeOnBus, VirtualClock, paired_buses
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.link import Link
 from laconic.can.rig.lockstep import load_scene
@@ -114,8 +113,8 @@ class Trial:
 @contextmanager
 def loaded(node: LibraryNode) -> Iterator[NodeClient]:
     """A client that has loaded a vehicle into this node."""
-    channel, clock = next_channel(), VirtualClock()
-    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+    clock = VirtualClock()
+    with paired_buses() as (ours, its):
         client = NodeClient(Link(ours, clock=clock, pump=NodeOnBus(node, its, clock).pump),
                             random_bits=random.Random(1).getrandbits)
         load_scene(client, SCENE)

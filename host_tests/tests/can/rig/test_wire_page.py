@@ -239,7 +239,8 @@ def test_the_pages_commands_run(key_files: tuple[str, str]):
     node, rig = (match.split() for match in re.findall(r"^    (laconic.* --key robot.key)$", text, re.MULTILINE))
     assert node[0] == "laconic-node-double"
     with node_process("double", ID_BASE, *(word.replace("robot.key", key_files[0]) for word in node[1:])) as port:
-        assert run([word.replace("PORT", str(port)).replace("robot.key", key_files[0]) for word in rig[1:]]) == 0
+        words = [word.replace("PORT", str(port)).replace("robot.key", key_files[0]) for word in rig[1:]]
+        assert run([*words, "--steps", "200"]) == 0
 
 
 def test_a_rig_with_a_key_drives_a_node_without_one(key_files: tuple[str, str]):

@@ -19,7 +19,7 @@ from laconic.can.play.node_vehicle import Bridged, NodeVehicle, running
 from laconic.can.play.settings import DriveSettings, drive_settings
 from laconic.can.play.vehicle import played
 from laconic.can.rig.boards import own_node
-from laconic.can.rig.buses import next_channel, node_in_process
+from laconic.can.rig.buses import node_in_process
 from laconic.can.rig.choices import BOARDS
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.link import Clock
@@ -27,6 +27,7 @@ from laconic.can.rig.wire import ID_BASE
 from laconic.errors import LaconicError, ResultFails
 from laconic.scene import Scene, read_scene
 from laconic.scene.methods import EXPLICIT
+from play_support import next_channel
 
 END_S = 5.0  # for the node's last frames
 METHOD = EXPLICIT  # every image contains it

@@ -1,12 +1,13 @@
-"""Ways to a node: a bus of python-can, a node in this process on the virtual bus, a node in a process of its own."""
+"""Ways to a node: a bus of python-can, a node in this process in virtual time, a node in a process of its own."""
 
 from __future__ import annotations
 
-import itertools
 import logging
 import re
 import subprocess
+import time
 import traceback
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -24,7 +25,6 @@ from laconic.can.rig.wire import ID_BASE
 from laconic.errors import BadInput, shown
 
 LARGEST_PORT = 65535
-_channel_numbers = itertools.count()
 
 
 def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
@@ -66,9 +66,38 @@ def let_go(error: Exception) -> None:
         log.disabled = was
 
 
-def next_channel() -> str:
-    """A channel name that no other virtual bus has."""
-    return f"laconic-{next(_channel_numbers)}"
+class PairedBus(can.BusABC):
+    """One of the two ends of a bus within this process, both used by one thread: what it sends waits at the other.
+
+    python-can's virtual bus copies each frame deeply, and locks a queue for each look at it.
+    """
+
+    channel_info = "paired bus"
+
+    def __init__(self) -> None:
+        super().__init__(channel=self.channel_info)
+        self._arrived: deque[can.Message] = deque()
+        self._other = self
+
+    def join(self, other: PairedBus) -> None:
+        """From now on they are two ends of the same bus."""
+        self._other, other._other = other, self
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """The frame is at the other end at once; neither end changes it."""
+        self._other._arrived.append(msg)
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        """The next frame; None where none waits, whatever the timeout: no other thread could send one meanwhile."""
+        return self._arrived.popleft() if self._arrived else None
+
+
+@contextmanager
+def paired_buses() -> Iterator[tuple[PairedBus, PairedBus]]:
+    """Both ends of one bus."""
+    with PairedBus() as near, PairedBus() as far:
+        near.join(far)
+        yield near, far
 
 
 class VirtualClock(Clock):
@@ -114,7 +143,8 @@ class NodeOnBus:
         self.node.tick(now)
 
     def sent_frame(self, message: can.Message) -> None:
-        """A frame leaves the node."""
+        """A frame leaves the node; its time, which other interfaces give, marks it as received."""
+        message.timestamp = time.time()
         self.bus.send(message)
 
     def send_all(self) -> bool:
@@ -129,16 +159,16 @@ class NodeOnBus:
 @contextmanager
 def node_in_process(real: str = "double", id_base: int = ID_BASE, clock: Clock | None = None,
                     **node_options: Any) -> Iterator[tuple[NodeClient, NodeOnBus]]:
-    """A node in this process on python-can's virtual bus, in virtual time unless there is a clock; with its end."""
-    channel, clock = next_channel(), clock or VirtualClock()
-    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+    """A node in this process, in virtual time unless there is a clock; with its end."""
+    clock = clock or VirtualClock()
+    with paired_buses() as (ours, its):
         end = NodeOnBus(LibraryNode(real, id_base, now_us=clock.now_us(), **node_options), its, clock)
         yield NodeClient(Link(ours, id_base, clock=clock, pump=end.pump)), end
 
 
 @contextmanager
 def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: Any) -> Iterator[NodeClient]:
-    """A node in this process on python-can's virtual bus, in virtual time."""
+    """A node in this process, in virtual time."""
     with node_in_process(real, id_base, **node_options) as (client, _):
         yield client
 

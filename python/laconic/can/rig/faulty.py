@@ -77,7 +77,7 @@ class OwnPort:
 
 
 # On the others the CAN controller makes error frames; one that a program sends would become some data frame.
-CARRY_ERROR_FRAMES = ("VirtualBus", "UdpMulticastBus", "ListeningBus")
+CARRY_ERROR_FRAMES = ("VirtualBus", "PairedBus", "UdpMulticastBus", "ListeningBus")
 
 
 class FaultyBus(can.BusABC):

@@ -126,15 +126,16 @@ def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[st
         raw = frame.unpack(data)
         group = part_of(frame, raw)
         for name in twins[0].get((step, frame.name, group), ()):
-            values = np.array([twin[step, frame.name, group][name] for twin in twins])
+            values = [twin[step, frame.name, group][name] for twin in twins]
             if turn := period_of(frame, name, wrap):  # of all equal angles, the one nearest to the answer
-                values -= turn * np.round((values - raw[name]) / turn)
+                values = [value - turn * round((value - raw[name]) / turn) for value in values]
+            least, largest = min(values), max(values)
             scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
-            spread[label] = max(spread.get(label, 0.0), float(np.ptp(values)))
-            slack = rounding_limit(raw[name], dtype) + spread[label]
+            spread[label] = max(spread.get(label, 0.0), largest - least)
+            slack = float(rounding_limit(raw[name], dtype)) + spread[label]
             slack += tolerances.get(label, tolerances.get(name, 0.0)) / scale
-            beyond = max(values.min() - slack - raw[name], raw[name] - values.max() - slack)
-            off = float(np.min(np.abs(values - raw[name]))) * scale
+            beyond = max(least - slack - raw[name], raw[name] - largest - slack)
+            off = min(abs(value - raw[name]) for value in values) * scale
             if label not in worst or beyond > worst[label][0]:
                 worst[label] = (beyond, off, step)
     return [Verdict(label, beyond <= 0.0, f"{off:.3g} from the nearest twin" if beyond <= 0.0 else

@@ -227,17 +227,17 @@ def count_of_hinged_frames(scene: Scene, frames: Sequence[str]) -> int:
 
 def values_with_hinges(plant: HingedPlant, frame: Frame, group: int) -> dict[str, float]:
     """The values of a frame of a vehicle with hinges, in the units of its signals."""
-    now, wrapped = plant.motion(), plant.core.lib.laconic_angle_wrapped
+    now, wrapped = plant.c_motion(), plant.core.lib.laconic_angle_wrapped
     if frame.name == "POSE":
-        return {"x": now.x_m, "y": now.y_m, "heading": float(wrapped(now.heading_rad))}
+        return {"x": now.x_m, "y": now.y_m, "heading": wrapped(now.heading_rad)}
     if frame.name == "VELOCITY":
         ahead, left = now.velocity_m_per_s
-        return {"ahead": float(ahead), "left": float(left), "yaw_rate": now.yaw_rate_rad_per_s}
-    of = {"WHEEL_SPEED": now.wheel_speed_rad_per_s, "WHEEL_ANGLE": now.wheel_angle_rad,
-          "HINGE_ANGLE": now.hinge_angle_rad, "HINGE_RATE": now.hinge_rate_rad_per_s}[frame.name]
-    three = of[WHEELS_A_GROUP * group : WHEELS_A_GROUP * (group + 1)]
+        return {"ahead": ahead, "left": left, "yaw_rate": now.yaw_rate_rad_per_s}
     stem, is_angle = frame.name.lower(), frame.name.endswith("ANGLE")
-    return {f"{stem}_{k}": float(wrapped(value) if is_angle else value) for k, value in enumerate(three, 1)}
+    of = getattr(now, f"{stem}_rad" if is_angle else f"{stem}_rad_per_s")
+    first, count = WHEELS_A_GROUP * group, plant.vehicle.wheel_count if stem[0] == "w" else plant.vehicle.body_count
+    return {f"{stem}_{k}": wrapped(of[at]) if is_angle else of[at]
+            for k, at in enumerate(range(first, min(first + WHEELS_A_GROUP, count)), 1)}
 
 
 def resting_row(twin: HingedTwin) -> np.ndarray:

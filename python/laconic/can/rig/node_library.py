@@ -1,4 +1,4 @@
-"""The node's C code as a shared library: protection for the link, and a node in this process for the virtual bus."""
+"""The node's C code as a shared library: protection for the link, and a node in this process."""
 
 from __future__ import annotations
 

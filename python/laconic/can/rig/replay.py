@@ -9,7 +9,7 @@ from pathlib import Path
 import can
 import numpy as np
 
-from laconic.can.rig.buses import next_channel
+from laconic.can.rig.buses import paired_buses
 from laconic.can.rig.client import NodeClient
 from laconic.can.rig.hinged import HINGED_FRAMES, HingedPlant, HingedTwin, NodeInputs, follow, signals_of_page
 from laconic.can.rig.judge import link_verdict, signal_verdicts
@@ -124,7 +124,7 @@ def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, floa
     """The verdicts of a recorded lockstep run with scaled frames; `channel`: of the bus in the log, None: the one."""
     recorded = read_frames(path)
     messages = frames_of_node(path, recorded.frames, id_base, channel)
-    with can.Bus(interface="virtual", channel=next_channel()) as nowhere:
+    with paired_buses() as (nowhere, _):
         link = Link(nowhere, id_base)
         player = LogPlayer(scene, id_base, link)
         for message in messages:

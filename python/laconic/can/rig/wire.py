@@ -144,6 +144,17 @@ def wire() -> Wire:
     return Wire(database)
 
 
+class NodeMessage(can.Message):
+    """A message that python-can's virtual bus copies in a fraction of the time; copies share no bytes either."""
+
+    __slots__ = ()
+
+    def __deepcopy__(self, memo: dict[int, Any] | None) -> can.Message:
+        copied = self.__copy__()
+        copied.data = bytearray(self.data)
+        return copied
+
+
 class FrameBox:
     """One laconic_frame, used again for every frame that passes."""
 
@@ -178,6 +189,6 @@ class FrameBox:
         """The frame as a message."""
         frame = self.c
         remote = bool(frame.remote)
-        return can.Message(timestamp=timestamp_s, arbitration_id=frame.id, is_extended_id=bool(frame.extended),
+        return NodeMessage(timestamp=timestamp_s, arbitration_id=frame.id, is_extended_id=bool(frame.extended),
                            is_remote_frame=remote, dlc=frame.length, data=None if remote else self.data,
                            is_fd=bool(frame.fd), bitrate_switch=bool(frame.bit_rate_switch))

@@ -69,9 +69,9 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
             a2l: Any, **given: Any) -> int:
     """Drives a node over CAN with the inputs of SCENE, runs the core as a reference, and judges every signal.
 
-    Without --interface and --board a node in this process answers on python-can's virtual bus, in virtual time. The
-    node is at rest when the command ends, also when it is interrupted. Exit status: 1 if a verdict fails or the bus or
-    node dies in the run; 2 if no node can be reached; 130 or 143 if SIGINT (Ctrl-C) or SIGTERM ended the run.
+    Without --interface and --board a node in this process answers, in virtual time. The node is at rest when the
+    command ends, also when it is interrupted. Exit status: 1 if a verdict fails or the bus or node dies in the run; 2
+    if no node can be reached; 130 or 143 if SIGINT (Ctrl-C) or SIGTERM ended the run.
     """
     from laconic.can.rig.a2l import a2l_text
     from laconic.can.rig.options import Options, read_id_base
