@@ -51,4 +51,5 @@ add_custom_target(c_format COMMAND "${LACONIC_VENV_BIN}/clang-format" -i ${c_fil
 add_dependencies(c_format laconic_venv)
 if(BUILD_TESTING)
     add_test(NAME c_style COMMAND "${LACONIC_VENV_BIN}/clang-format" --dry-run --Werror ${c_files})
+    set_tests_properties(c_style PROPERTIES LABELS style)
 endif()
