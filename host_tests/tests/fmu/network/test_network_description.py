@@ -99,7 +99,7 @@ def test_the_sources_inside_are_all_listed_and_left_out_on_request(fmus: list[Pa
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
-@pytest.mark.parametrize("name", ["Node", "CanBus", "CanController"])
+@pytest.mark.parametrize("name", ["CanBus", "CanController", pytest.param("Node", marks=pytest.mark.nightly)])
 def test_the_sources_inside_compile_with_the_headers_of_fmi_alone(name: str, tmp_path: Path) -> None:
     fmu = built(f"fmu/Laconic{name}_fmi3.fmu")
     zipfile.ZipFile(fmu).extractall(tmp_path)
