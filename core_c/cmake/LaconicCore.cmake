@@ -8,5 +8,5 @@ string(REGEX MATCH "[0-9]+\\.[0-9]+\\.[0-9]+" LACONIC_VERSION "${laconic_version
 # compiles from one flat folder, as source FMUs and packages of embedded tools have it.
 
 get_filename_component(core_source_folder "${CMAKE_CURRENT_LIST_DIR}/../src" ABSOLUTE)
-set(core_folders common math vehicle methods friction plant sensors)
+set(core_folders common math vehicle methods friction state sensors)
 list(TRANSFORM core_folders PREPEND "${core_source_folder}/")

@@ -1,4 +1,5 @@
-/* The table of all methods. It links every method; firmware with one fixed method uses that one's name instead. */
+/* The table of all methods, from their list in laconic/methods.h. It links every method; firmware with one fixed method
+ * uses that one's name instead. */
 #include "common.h"
 
 /* The row of a method that this build leaves out is NULL, so that the others keep their numbers. */

@@ -2,7 +2,7 @@
  *
  *     canopen.c      frames to nodes, time, the order of sending; NMT and heartbeat
  *     sdo.c          reads and writes objects on request   ┐
- *     pdo.c          sends and receives mapped objects     ┴ dictionary.c: the objects themselves (objects.h)
+ *     pdo.c          sends and receives mapped objects     ┴ object_access.c: the objects themselves (objects.h)
  *     emergency.c    error register and history, EMCY, what a lost connection does
  *     state.c        the CiA 402 state machine: controlword, statusword
  *     motion.c       modes of operation: from target objects to the target of the drive */
@@ -177,7 +177,7 @@ static inline bool canopen_is_from_axis(const canopen_row *row) { return (row->f
 
 static inline uint8_t canopen_id(const canopen_node *on) { return (uint8_t)on->drive->settings.node_id; }
 
-/* dictionary.c */
+/* object_access.c */
 #define CANOPEN_NO_ROW 0xFFU
 const canopen_row *canopen_row_at(uint8_t number);
 /* Number of the row of an object; CANOPEN_NO_ROW, and why. */

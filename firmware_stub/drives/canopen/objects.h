@@ -4,12 +4,12 @@
  *   GROUP(index, object type, name)                                     an array or a record: its name, for the EDS
  *   FIELD(index, sub, last, type, access, member, after reset, name)    a member of canopen_axis
  *   VALUE(index, sub, last, type, access, value, name)                  a constant below 65,536
- *   CALL(index, sub, last, type, access, what, name)                    dictionary.c or pdo.c knows it: canopen_call
+ *   CALL(index, sub, last, type, access, what, name)                    object_access.c or pdo.c knows it: canopen_call
  *
  * A row stands for the sub-indices sub … last. The rows of 0x1400, 0x1600, 0x1800 and 0x1A00 stand for four indices.
  * Access: CANOPEN_R and CANOPEN_W over SDO, CANOPEN_TX and CANOPEN_RX in a PDO that the drive sends or receives. A row
- * that CALL or VALUE makes writable takes only the value that it has, unless dictionary.c says otherwise: a controller
- * that configures what the drive is gets on, and one that believes in another drive is told. */
+ * that CALL or VALUE makes writable takes only the value that it has, unless object_access.c says otherwise: a
+ * controller that configures what the drive is gets on, and one that believes in another drive is told. */
 #ifndef LACONIC_CANOPEN_OBJECTS_H
 #define LACONIC_CANOPEN_OBJECTS_H
 

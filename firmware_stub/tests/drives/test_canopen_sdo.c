@@ -1,4 +1,4 @@
-/* Tests of sdo.c and dictionary.c: transfers, and the abort code of every kind of wrong request. */
+/* Tests of sdo.c and object_access.c: transfers, and the abort code of every kind of wrong request. */
 #include "canopen_bench.h"
 
 void setUp(void) { power_up(); }

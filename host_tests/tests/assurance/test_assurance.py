@@ -222,7 +222,7 @@ def test_a_long_run_takes_its_least_piece_and_finds_nothing(name: str) -> None:
 
 
 def test_sizes_tell_product_tests_and_apparatus_apart() -> None:
-    kinds = {"core_c/src/plant/plant.c": "product", "core_c/tests/plant/test_plant.c": "test", ".ci/run": "apparatus",
+    kinds = {"core_c/src/state/plant.c": "product", "core_c/tests/state/test_plant.c": "test", ".ci/run": "apparatus",
              "host_tests/assurance/sizes.py": "apparatus", "python/laconic/core/plant.py": "product"}
     assert {path: sizes.kind_of(path) for path in kinds} == kinds
     assert sizes.lines_by_kind(["host_tests/assurance/sizes.py"])["apparatus"] > 20

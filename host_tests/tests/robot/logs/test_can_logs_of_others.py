@@ -13,8 +13,8 @@ from laconic.can.dbc_file import load_dbc
 from laconic.can.rig.logs import read_log
 from laconic.cli.main import run
 from laconic.robot.logs import gather_logs
-from laconic.robot.logs.can_frames import read_frames
 from laconic.robot.logs.can_signals import Bits, Words
+from laconic.robot.logs.formats.can_frames import read_frames
 from log_support import (
     ASC_HEAD,
     DBC,
@@ -388,7 +388,7 @@ def test_frames_of_another_length_are_left_out_of_a_rigs_replay_and_reported(tmp
 
 
 def test_a_log_as_mf4_names_the_package_that_it_needs(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("laconic.robot.logs.can_frames.importlib.util.find_spec", lambda _: None)
+    monkeypatch.setattr("laconic.robot.logs.formats.can_frames.importlib.util.find_spec", lambda _: None)
     monkeypatch.setattr("importlib.metadata.requires", lambda _: ["asammdf>=8 ; extra == 'mf4'"])
     assert run(["rig", "turtlebot3_burger", "--steps", "10", "--log", str(tmp_path / "run.mf4")]) == 2
     assert 'asammdf, which is not installed; pip install "laconic[mf4]"' in capsys.readouterr().err

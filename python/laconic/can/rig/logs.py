@@ -14,8 +14,8 @@ from laconic.base.outputs import make_folder
 from laconic.base.text_file import text_of_file
 from laconic.can.rig.link import Clock
 from laconic.errors import BadInput, reason_of
-from laconic.robot.logs.blf_log import header_of
-from laconic.robot.logs.can_frames import LoggedFrame, needs_of, read_frames
+from laconic.robot.logs.formats.blf_log import header_of
+from laconic.robot.logs.formats.can_frames import LoggedFrame, needs_of, read_frames
 
 
 class Heard(Protocol):

@@ -21,7 +21,7 @@ from laconic.can.rig.verdict import Judgement, Verdict
 from laconic.can.rig.wire import wire
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
-from laconic.robot.logs.can_frames import LoggedFrame, read_frames
+from laconic.robot.logs.formats.can_frames import LoggedFrame, read_frames
 from laconic.scene import Scene
 
 COMPARED = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", *HINGED_FRAMES)

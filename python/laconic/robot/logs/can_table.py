@@ -18,9 +18,9 @@ import numpy as np
 from laconic.base.paths import SOURCE_DIR
 from laconic.can.dbc_file import Dbc, DbcEntry, load_dbc
 from laconic.errors import BadInput, nearest_of
-from laconic.robot.logs.can_frames import LoggedFrame, read_frames
 from laconic.robot.logs.can_signals import Wanted, float_fault
 from laconic.robot.logs.column_map import ColumnMap
+from laconic.robot.logs.formats.can_frames import LoggedFrame, read_frames
 from laconic.robot.logs.quantity import NUMBERED, Quantity
 
 OWN_DBC = SOURCE_DIR / "firmware_stub" / "laconic.dbc"

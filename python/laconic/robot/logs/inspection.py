@@ -20,12 +20,12 @@ from laconic.robot.bags.samples import (
     sample_messages,
     topics_in,
 )
-from laconic.robot.logs.bag_source import POSES, own_name, read_mat
 from laconic.robot.logs.column_map import ColumnMap, map_of
 from laconic.robot.logs.for_vehicle import corner_of, places_by_name, words_of
+from laconic.robot.logs.formats.bag_source import POSES, own_name, read_mat
+from laconic.robot.logs.formats.text_table import number_of, rows_of, text_of
 from laconic.robot.logs.guess import STEERED, TRUE, UNTRUE, Guess, guess_table, toml_text
 from laconic.robot.logs.recognise import OF_CAN, known_guess
-from laconic.robot.logs.text_table import number_of, rows_of, text_of
 from laconic.scene.table import Table
 
 BEST = ("Odometry", "PoseStamped", "PoseWithCovarianceStamped", "PoseInFrame", "TransformStamped", "Pose2D", "Pose",
@@ -288,7 +288,7 @@ def _rows(columns: Mapping[str, np.ndarray], texts: Mapping[str, str], guess: Gu
 
 def _of_can(path: Path) -> Inspection:
     """Frames by their identifiers; what is in them is in a DBC."""
-    from laconic.robot.logs.can_frames import read_frames
+    from laconic.robot.logs.formats.can_frames import read_frames
 
     count = Counter(f"0x{frame.arbitration_id:X}" for frame in read_frames(path).frames)
     guess = Guess({"format": "can"}, missing=["dbc: the DBC file that names the signals; then columns are "

@@ -15,11 +15,11 @@ from laconic.robot.bags.samples import check_sizes
 from laconic.robot.logs import poses
 from laconic.robot.logs.column_map import ColumnMap
 from laconic.robot.logs.for_vehicle import spread
+from laconic.robot.logs.formats.text_table import metadata_number, metadata_of
 from laconic.robot.logs.log import COMMANDED, LEAST_SAMPLES, MEMBERS, PER_WHEEL, STEERING, Counter, Following, Log
 from laconic.robot.logs.quantity import COMMAND, OF_ANGLE, YAW_RATE, Quantity, is_by_scene_radius, wheel_unit
 from laconic.robot.logs.rows import Sampled, choose
 from laconic.robot.logs.sources import Raw, Source, source_of
-from laconic.robot.logs.text_table import metadata_number, metadata_of
 from laconic.robot.logs.units import LATITUDE, OF_QUANTITY, OF_WHEEL, TICK, of_tread
 from laconic.robot.logs.wraps import (
     TURNS,

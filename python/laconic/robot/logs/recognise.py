@@ -1,4 +1,7 @@
-"""Finds the logs among files and folders, and for each the map of the project that recognises it."""
+"""Finds the logs among files and folders, and for each the map of the project that recognises it.
+
+How a file of each format is read stands in the folder formats.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,11 @@ from laconic.errors import BadInput
 from laconic.robot.bags.messages import ENDINGS as OF_BAG
 from laconic.robot.bags.messages import OF_ROSBAG2, is_bag
 from laconic.robot.logs.column_map import ColumnMap, fits, project_maps, read_map
+from laconic.robot.logs.formats.text_table import text_of
 from laconic.robot.logs.guess import Guess
 from laconic.robot.logs.log import Log
 from laconic.robot.logs.read import read_log
 from laconic.robot.logs.sources import numbered
-from laconic.robot.logs.text_table import text_of
 from laconic.scene.table import read_map_toml
 
 ENDINGS = (".csv", ".csv.gz", ".txt", ".blf", ".asc")

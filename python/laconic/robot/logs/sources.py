@@ -13,9 +13,9 @@ import numpy as np
 
 from laconic.errors import BadInput, shown
 from laconic.robot.logs.column_map import ColumnMap
+from laconic.robot.logs.formats.text_table import TextTable, read_text
 from laconic.robot.logs.log import LEAST_SAMPLES
 from laconic.robot.logs.quantity import NUMBERED, Column, Quantity, is_numbered
-from laconic.robot.logs.text_table import TextTable, read_text
 from laconic.robot.logs.units import ISO, TIME
 
 DATE = re.compile(r"(\d{4})[-/](\d\d?)[-/](\d\d?)[T ]+(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?\s*(Z|[+-]\d\d:?\d\d)?")
@@ -136,11 +136,11 @@ class Source:
 def source_of(path: Path, columns: ColumnMap) -> Source:
     """The samples of a log, in the format of its map."""
     if columns.format == "bag":
-        from laconic.robot.logs.bag_source import bag_source
+        from laconic.robot.logs.formats.bag_source import bag_source
 
         return bag_source(path, columns)
     if columns.format == "mat":
-        from laconic.robot.logs.bag_source import mat_source
+        from laconic.robot.logs.formats.bag_source import mat_source
 
         return mat_source(path, columns)
     return _can_source(path, columns) if columns.format == "can" else _text_source(path, columns)

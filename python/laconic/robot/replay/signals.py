@@ -16,8 +16,8 @@ import numpy as np
 
 from laconic.base.text_file import beginning_of
 from laconic.errors import BadInput
+from laconic.robot.logs.formats.text_table import number_of, rows_of, text_of
 from laconic.robot.logs.log import counted
-from laconic.robot.logs.text_table import number_of, rows_of, text_of
 from laconic.robot.replay.measures import RunErrors
 from laconic.scene import Outputs, Scene
 from laconic.scene.inputs import Input, step_in_words, step_remedy

@@ -69,10 +69,10 @@ def read_frames(path: Path) -> Recorded:
 
 
 def _reader_of(path: Path) -> Callable[[Path], Recorded]:
-    from laconic.robot.logs.asc_log import read_asc
-    from laconic.robot.logs.blf_log import is_blf, read_blf
-    from laconic.robot.logs.candump_log import is_candump, read_candump
-    from laconic.robot.logs.trc_log import read_trc
+    from laconic.robot.logs.formats.asc_log import read_asc
+    from laconic.robot.logs.formats.blf_log import is_blf, read_blf
+    from laconic.robot.logs.formats.candump_log import is_candump, read_candump
+    from laconic.robot.logs.formats.trc_log import read_trc
 
     by_ending = {".asc": read_asc, ".blf": read_blf, ".log": read_candump, ".trc": read_trc}
     ending = Path(path.name.lower().removesuffix(".gz")).suffix

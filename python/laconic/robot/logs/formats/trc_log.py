@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from laconic.robot.logs.can_frames import (
+from laconic.robot.logs.formats.can_frames import (
     FD_LENGTHS,
     STANDARD,
     LoggedFrame,

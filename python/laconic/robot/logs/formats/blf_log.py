@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from laconic.base.text_file import bytes_of
-from laconic.robot.logs.can_frames import WANTED, FaultyLog, LoggedFrame, Recorded
+from laconic.robot.logs.formats.can_frames import WANTED, FaultyLog, LoggedFrame, Recorded
 
 FILE_MARK, OBJECT_MARK = b"LOGG", b"LOBJ"
 FILE_HEADER = struct.Struct("<4sL8xQQLL8H8H")

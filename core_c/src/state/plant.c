@@ -1,5 +1,6 @@
 /* The plant: vehicle, model, integrator and state together, with an integer count of steps. A vehicle with friction is
- * stepped by the friction step, any other by its integrator's method. */
+ * stepped by the friction step, any other by its integrator's method. The equations of motion
+ * stand in derivative.c, those on friction in the folder friction. */
 #include "common.h"
 
 /* Builds without friction have no room for it, and never come to where these are used. */
