@@ -95,12 +95,13 @@ unity_tests() {
 }
 
 # sanitizers OPTION…: the C tests under the sanitizers for addresses and undefined behaviour, by clang, which
-# has no warning about what ships: the tests compile it but for the FMU of hinges
+# has no warning about what ships: the tests compile it but for the FMUs of hinges
 sanitizers() {
     local options=(-DLACONIC_SANITIZE=address,undefined -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug)
     command -v ld.lld >/dev/null && # takes half of the time for programs with sanitizers
         options+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld)
-    another_build build-checked "laconic_unity_tests LaconicSlipping_fmi3 laconic_node" "${options[@]}" && unity_tests build-checked "$@"
+    another_build build-checked "laconic_unity_tests LaconicArticulated_fmi3 LaconicSlipping_fmi3 laconic_node" \
+        "${options[@]}" && unity_tests build-checked "$@"
 }
 
 # two_at_a_time NAME FUNCTION NAME FUNCTION…: gates beside each other, in this order; the next begins when one ends

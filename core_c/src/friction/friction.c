@@ -1,4 +1,5 @@
-/* A vehicle with friction → the constants of its contacts, motors and axles; the state in which its wheels start. */
+/* A vehicle with friction → the constants of its contacts, motors and axles; the state in which its wheels start. How
+ * grip and drag act in a step stands in friction_solver.c. */
 #include "friction_vehicle.h"
 
 #include "geometry.h"

@@ -334,3 +334,24 @@ def test_a_broken_file_is_one_line_with_its_field(tmp_path: Path, cases: list[di
 def test_a_method_of_ideal_ground_is_refused() -> None:
     with pytest.raises(BadInput, match="circle does not step"):
         verified(REFERENCE, "--method", "circle")
+
+
+@pytest.mark.parametrize("name", ["tricycle_agv", "swerve_module_off"])
+def test_the_origin_lies_beside_the_centre_of_mass(name: str) -> None:
+    tables = tables_of(name)
+    tables["vehicle"] |= {"com_x_m": 0.05, "com_y_m": 0.03}
+    tables["initial"] = {"heading_deg": 40.0}
+    run = simulate(build_scene(shortened(tables, 1.0)), ["x_m", "y_m", "heading_rad", "origin_x_m", "origin_y_m"])
+    of = run.columns
+    origin = of["x_m"] + 1j * of["y_m"] - np.exp(1j * of["heading_rad"]) * (0.05 + 0.03j)
+    assert of["origin_x_m"] + 1j * of["origin_y_m"] == pytest.approx(origin, abs=1e-12)
+
+
+def test_coordinated_wheels_turn_on_where_their_direction_comes_round() -> None:
+    tables = tables_of("swerve_module_off")
+    turn = {"steering_twist[1]": [0.5, 0.0, -0.5, 0.0, 0.5], "steering_twist[2]": [0.0, 0.5, 0.0, -0.5, 0.0]}
+    tables |= {"input": [{"signal": signal, "kind": "table", "t_s": [0.0, 1.0, 2.0, 3.0, 4.0], "value": value}
+                         for signal, value in turn.items()], "run": {"duration_s": 4.0, "step_s": 0.01}}
+    angles = simulate(build_scene(tables), ["hinge_angle_rad"]).columns_of("hinge_angle_rad")
+    assert np.abs(np.diff(angles, axis=0)).max() < 0.2
+    assert angles[-1] - angles[0] == pytest.approx(2.0 * math.pi, abs=0.1)

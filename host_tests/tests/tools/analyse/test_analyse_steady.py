@@ -14,7 +14,7 @@ from laconic.tools.analyse.cycle import cycle_near, first_lyapunov
 from laconic.tools.analyse.field import Field
 from laconic.tools.analyse.from_core import field_of, nu_rates, subject_of
 from laconic.tools.analyse.motions import command_parameter, commanded_straight, default_range, straight_thresholds
-from laconic.tools.analyse.steady import SteadyMotion, families, steady_motions
+from laconic.tools.analyse.steady import SteadyMotion, families, steady_motions, steady_polynomial
 
 CORE = load("double")
 NU_1 = (0.0, 3.0, -2.0)
@@ -209,6 +209,16 @@ def test_jacobian_is_the_derivative_of_the_field(seed):
     zeta, step = np.random.default_rng(seed).normal(0.0, 3.0, 3), 1e-6
     columns = [(field.rates(zeta + step * e) - field.rates(zeta - step * e)) / (2 * step) for e in np.eye(3)]
     assert np.column_stack(columns) == pytest.approx(field.jacobian(zeta), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_polynomial_is_that_of_its_determinants(seed):
+    field, _, _ = random_field(seed)
+    for yaw_rate in np.random.default_rng(seed).normal(0.0, 3.0, 5):
+        matrix = -field.linear_matrix - yaw_rate * field.cross_matrix
+        det = np.linalg.det(matrix)
+        expected = yaw_rate * det - det * field.yaw_row @ np.linalg.solve(matrix, field.forcing)
+        assert np.polynomial.polynomial.polyval(yaw_rate, steady_polynomial(field)) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(10))

@@ -196,9 +196,10 @@ def test_an_encoder_that_wheels_share_counts_the_turns_of_one(wheels: int, tmp_p
     assert min(turns) > 1.0 and len(made) == 2
     for each in made.values():           # wheels of one side slip, so that their angles differ
         assert min(abs(each.count / counts - turn) for turn in turns) < 2.0 / counts
-    made[0].count = 0                    # a reset by the program
-    engine.update_sim(0.0, 0.02)
-    assert 0 < made[0].count < 0.2 * made[2].count
+    for _ in range(2):
+        made[0].count = 0                # a reset by the program
+        engine.update_sim(0.0, 0.02)
+        assert 0 < made[0].count < 0.2 * made[2].count
 
 
 # ---- the drivetrain

@@ -1,4 +1,7 @@
-"""Reads one log by a map: columns become quantities at the wheel, in SI units, in the scene's order of wheels."""
+"""Reads one log by a map: columns become quantities at the wheel, in SI units, in the scene's order of wheels.
+
+Files are opened in the folder formats.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Finds the logs among files and folders, and for each the map of the project that recognises it.
 
-How a file of each format is read stands in the folder formats.
+The folder formats reads each: text_table.py text, bag_source.py recordings of topics; can_frames.py chooses the reader
+of a CAN log.
 """
 
 from __future__ import annotations
