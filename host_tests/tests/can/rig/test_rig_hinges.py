@@ -37,7 +37,7 @@ WITH_HINGES = [name for name in scene_names() if name not in RIGID]
 ON_FRICTION = tuple(name for name in WITH_HINGES if slips(read_scene(name).vehicle))
 HINGED = tuple(name for name in WITH_HINGES if name not in ON_FRICTION)
 SELDOM = pytest.mark.nightly
-# by day: these three are told to steer only after step 300; pr2_base and tricycle_agv after step 800, at night alone
+# by day: these three are told to steer only from step 300 on; pr2_base and tricycle_agv from 800 on, at night alone
 DAY_STEPS = dict.fromkeys(HINGED, 200) | {"f1tenth": 400, "frc_swerve_mk4i": 350, "tugger_train": 700}
 
 
