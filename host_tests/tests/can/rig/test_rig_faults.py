@@ -36,7 +36,7 @@ def some_cases(share: int) -> Iterator[Row]:
 @pytest.mark.parametrize("seed, share", [(FIXED_SEED, 7), *(pytest.param(seed, 1, marks=pytest.mark.nightly)
                                                             for seed in (FIXED_SEED, None))],
                          ids=["one case in seven", "all cases", "random seed"])
-def test_the_whole_fault_matrix_holds(seed: int | None, share: int, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_fault_matrix_holds(seed: int | None, share: int, capsys: pytest.CaptureFixture[str]) -> None:
     seed = random.SystemRandom().randrange(2**31) if seed is None else seed
     rows = list(run_matrix(seed) if share == 1 else some_cases(share))
     with capsys.disabled():

@@ -35,7 +35,7 @@ class KnownNames(lark.Lark):
     legal: ClassVar[set[tuple[str, str]]] = set()
 
     def parse(self, text: str, *_: Any, **__: Any) -> None:
-        known = self.source_grammar, re.sub(r"\[\d+\]", "[]", text)
+        known = self.source_grammar, re.sub(r"\[\d+\]", "[0]", text)
         if known not in self.legal:
             super().parse(text)
             self.legal.add(known)

@@ -90,6 +90,11 @@ def test_every_function_that_a_program_begins_with_is_checked(call, libraries):
     assert same.returncode == 0, same.stderr
 
 
+def test_a_part_of_the_core_that_the_program_leaves_out_is_named(libraries):
+    differs = run(libraries, "-DLACONIC_WITH_SLOPE=0", "-I.", "plant.c", "0.o", "-Wl,--gc-sections", "-o", "program")
+    assert missing(differs) == {"LACONIC_WITH_SLOPE_0"}
+
+
 HINGED = {
     "prepare": "static laconic_articulated_model m; static laconic_articulated_vehicle v;"
                "return (int)laconic_articulated_prepare(&m, &v, NULL);",

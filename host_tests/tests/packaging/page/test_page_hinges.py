@@ -195,8 +195,8 @@ def own_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.nightly
-@pytest.mark.parametrize("robot", TURNED_BY)
+@pytest.mark.parametrize("robot", [name if name == "servo" else pytest.param(name, marks=pytest.mark.nightly)
+                                   for name in TURNED_BY])
 def test_velocity_drives_a_swerve_whose_modules_turn_by_themselves(window, own_page, robot, tmp_path):
     window.open(own_page / "laconic.html", prefers_reduced_motion="reduce")
     choose(window, robot)

@@ -60,8 +60,8 @@ def test_a_closed_stdout_is_one_line():
 
 
 @pytest.mark.parametrize("name, status, words", [
-    ("SIGINT", 130, "stopped by the user"), ("SIGTERM", 143, "stopped by SIGTERM"),
-    pytest.param("SIGHUP", 129, "by SIGHUP", marks=pytest.mark.nightly)])
+    ("SIGINT", 130, "stopped by the user"), ("SIGHUP", 129, "stopped by SIGHUP"),
+    pytest.param("SIGTERM", 143, "stopped by SIGTERM", marks=pytest.mark.nightly)])
 def test_a_signal_is_one_line_and_leaves_no_half_file(name, status, words, tmp_path):
     out = tmp_path / "run.csv"
     out.write_text("before")

@@ -159,12 +159,14 @@ def test_a_scene_without_odometry_states_so(tmp_path, capsys):
     assert "has no /odom and no /tf" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("mode", ["--lockstep", pytest.param("--free-run", marks=pytest.mark.nightly)])
-def test_a_rig_writes_what_its_node_sends(mode, tmp_path, capsys):
-    bag = tmp_path / "run.mcap"
-    assert run(["rig", "turtlebot3_burger", mode, "--steps", "2500", "--bag", str(bag), "--json"]) == 0
+@pytest.mark.parametrize("scene, steps", [("", 400), pytest.param("turtlebot3_burger", 2500,
+                                                                  marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("mode", ["--lockstep", "--free-run"])
+def test_a_rig_writes_what_its_node_sends(mode, scene, steps, tmp_path, capsys):
+    bag, scene = tmp_path / "run.mcap", scene or str(driven(tmp_path))
+    assert run(["rig", scene, mode, "--steps", str(steps), "--bag", str(bag), "--json"]) == 0
     capsys.readouterr()
-    assert run(["replay", str(bag), "turtlebot3_burger", "--json"]) == 0
+    assert run(["replay", str(bag), scene, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["runs"][0]["path_error"] < 0.03  # millimetres of POSE over some centimetres
     assert any("/joint_states: " in each for each in found["remarks"])

@@ -28,7 +28,8 @@ from laconic.tools.derive.tree_system import Tree, derive_tree, energy_of_twists
 HINGED = [name for name in scene_names()
           if file_has_hinges(scene_path(name)) and not read_scene(name).slips_on_hinges]
 QUICK = ("f1tenth", "tricycle_agv", "wheel_loader")
-EVERY = [name if name in QUICK else pytest.param(name, marks=pytest.mark.nightly) for name in (*HINGED, "on a slope")]
+EVERY, EVERY_AND_WHEELCHAIR = ([name if name in by_day else pytest.param(name, marks=pytest.mark.nightly)
+                               for name in (*HINGED, "on a slope")] for by_day in (QUICK, (*QUICK, "wheelchair")))
 SIDE = {"kind": "fixed", "axle_deg": -90.0, "x_m": 0.0}
 
 
@@ -67,7 +68,7 @@ def test_there_are_eight_scenes_with_hinges() -> None:
     assert len(HINGED) >= 8
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", EVERY_AND_WHEELCHAIR)
 def test_derived_equations_of_a_tree_give_the_cores_accelerations(name: str) -> None:
     assert tree_core_difference(*derived(name), count=40) < 1e-11
 
@@ -145,8 +146,9 @@ def test_text_and_latex_of_a_tree_name_bodies_and_numbers_and_have_no_bare_prime
 
 
 @pytest.mark.parametrize(("words", "start"), [
-    ([], "F1TENTH car: laconic"), *(pytest.param([form], f"{start} F1TENTH car", marks=pytest.mark.nightly)
-                                    for form, start in (("--c", "/*"), ("--latex", "%")))])
+    (["--latex"], "% F1TENTH car: laconic equations (2.3)"),
+    *(pytest.param(words, start, marks=pytest.mark.nightly)
+      for words, start in (([], "F1TENTH car: laconic"), (["--c"], "/* F1TENTH car")))])
 def test_derive_prints_a_scene_with_hinges_and_its_checks(words: list[str], start: str,
                                                           capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["derive", "f1tenth", *words, "--json"]) == 0
