@@ -1,5 +1,5 @@
-/* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. Its variables
- * are declared in the project's modelDescription.xml; variable_locations.h says where each stands. */
+/* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. The
+ * project's modelDescription.xml declares its variables; variable_locations.h says where each stands. */
 #include "core_words.h"
 #include "model_interface.h"
 #include "parts.h"
