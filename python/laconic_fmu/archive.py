@@ -106,11 +106,12 @@ def build_description(sources: Sequence[str], identifier: str) -> str:
 
 def read_parts(path: Path) -> dict[str, bytes]:
     """All parts of an FMU."""
-    return dict(_parts_of(path, path.stat().st_mtime_ns))
+    now = path.stat()
+    return dict(_parts_of(path.resolve(), (now.st_mtime_ns, now.st_size, now.st_ino)))
 
 
 @lru_cache(maxsize=16)
-def _parts_of(path: Path, written_ns: int) -> Mapping[str, bytes]:
+def _parts_of(path: Path, state: tuple[int, int, int]) -> Mapping[str, bytes]:
     """The same. FMUs of many scenes are made from few archives, which are read once."""
     with zipfile.ZipFile(path) as archive:
         return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}

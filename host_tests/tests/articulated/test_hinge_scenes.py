@@ -227,3 +227,14 @@ def test_a_wheel_that_lifts_on_ground_with_friction_is_reported() -> None:
     del tables["vehicle"]["friction_coefficient"]
     run = simulate(build_scene(tables))
     assert run.lifted and run.lifted[1] <= 0.02
+
+
+def test_a_carriage_on_supports_needs_no_wheels_to_have_a_friction_coefficient() -> None:
+    corners = [{"x_m": x, "y_m": y} for x, y in ((0.3, 0.0), (-0.3, 0.2), (-0.3, -0.2))]
+    own = {"mass_kg": 20.0, "yaw_inertia_kgm2": 1.0, "com_z_m": 0.2, "friction_coefficient": 0.5, "support": corners,
+           "wheel_radius_m": 0.05, "wheel_inertia_kgm2": 1e-3,
+           "body": [{"name": "arm", "hinge": "free", "hinge_x_m": 0.1, "hinge_y_m": 0.0, "mass_kg": 1.0,
+                     "yaw_inertia_kgm2": 0.1, "com_x_m": 0.3}]}
+    scene = build_scene({"vehicle": own, "run": {"duration_s": 0.1, "step_s": 0.01},
+                                 "initial": {"velocity_body_m_per_s": [1.0, 0.0]}})
+    assert simulate(scene, ["x_m"]).columns["x_m"][-1] > 0.05

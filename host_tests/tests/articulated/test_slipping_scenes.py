@@ -20,6 +20,7 @@ from hinge_scenes import CASTER, HINGED, WHEEL, held, tables_of, two_wheels
 from laconic import SlippingVehicle, Trajectory, build_scene, plot, simulate
 from laconic.cli.commands.verify import command
 from laconic.cli.main import run
+from laconic.core.slipping import SlipWatch
 from laconic.errors import BadInput, Refused
 
 GROUND = {"friction_coefficient": 0.7}
@@ -355,3 +356,16 @@ def test_coordinated_wheels_turn_on_where_their_direction_comes_round() -> None:
     angles = simulate(build_scene(tables), ["hinge_angle_rad"]).columns_of("hinge_angle_rad")
     assert np.abs(np.diff(angles, axis=0)).max() < 0.2
     assert angles[-1] - angles[0] == pytest.approx(2.0 * math.pi, abs=0.1)
+
+
+def test_losses_of_wheels_are_those_of_the_book_though_the_step_changes() -> None:
+    scene = build_scene(slipping("trailer_on_ice"))
+    vehicle = SlippingVehicle.of(scene)
+    plant = vehicle.plant(scene.run.method, 0.004, velocity_m_per_s=(3.0, 1.0), yaw_rate_rad_per_s=1.5)
+    watch, rows = SlipWatch(plant), np.zeros((60, vehicle.input_row().size))
+    for step_s in (0.004, 0.001):
+        plant.set_step(step_s)
+        plant.follow(rows, watch)
+    found = plant.outputs()
+    assert watch.loss_J.sum() == pytest.approx(found.slip_loss_J + found.scrub_loss_J, rel=1e-9)
+    assert watch.loss_J.sum() > 1.0

@@ -107,11 +107,14 @@ def lengths_of(kind: type, wheels: int, hinges: int) -> Mapping[str, int | None]
 
 
 def members_of(rows: Any, lengths: Mapping[str, int | None]) -> dict[str, Any]:
-    """Members of a struct, an item of `Structs.table`, or of several: views of arrays, cut to the items that there are.
-    """
+    """Members of a struct, an item of `Structs.table`, or of several, cut to the items that there are.
+
+    Arrays of one struct are copies, so that who keeps one does not keep the others; of several they are views."""
     each_row = (slice(None),) * rows.ndim
-    return {name: _number_or_column(rows[name]) if length is None else rows[name][(*each_row, slice(length))]
-            for name, length in lengths.items()}
+    found = {name: _number_or_column(rows[name]) if length is None else rows[name][(*each_row, slice(length))]
+             for name, length in lengths.items()}
+    return found if rows.ndim else {name: value.copy() if isinstance(value, np.ndarray) else value
+                                    for name, value in found.items()}
 
 
 def _number_or_column(value: Any) -> Any:

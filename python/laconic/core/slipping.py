@@ -319,6 +319,7 @@ class SlipWatch:
         self._twists = np.frombuffer(core.ffi.buffer(plant.c.body), core.dtype).reshape(-1, 3)
         self._bodies = [int(plant.vehicle.model.wheel[i].body) for i in range(wheels)]
         self._yaw_rates = np.zeros((WATCHED, len(self._twists)), core.dtype)
+        self._steps_s = np.zeros((WATCHED, 1), core.dtype)  # a plant may change its step
         self._slipped, self._loss_J = np.zeros(wheels, bool), np.zeros(wheels)
 
     def see(self) -> None:
@@ -329,7 +330,7 @@ class SlipWatch:
             back = round(0.5 * plant.step_s * float(middle.z[3 + b]) / math.tau * self._turn)
             middle.hinge[b].fraction = (int(middle.hinge[b].fraction) - back) % self._turn
         plant.see_outputs(self._seen.c + self._count, middle)
-        self._yaw_rates[self._count] = self._twists[:, 2]
+        self._yaw_rates[self._count], self._steps_s[self._count] = self._twists[:, 2], plant.step_s
         self._count += 1
         if self._count == WATCHED:
             self._judge()
@@ -337,9 +338,9 @@ class SlipWatch:
     def _judge(self) -> None:
         """Adds up what was seen since the last time, step by step."""
         found = self._plant.vehicle.outputs_of(self._seen.table[: self._count])
-        losses = self._plant.step_s * (found.lateral_N * found.slip_across_m_per_s
-                                       - found.along_N * found.slip_along_m_per_s
-                                       - found.scrub_Nm * self._yaw_rates[: self._count, self._bodies])
+        losses = self._steps_s[: self._count] * (found.lateral_N * found.slip_across_m_per_s
+                                                 - found.along_N * found.slip_along_m_per_s
+                                                 - found.scrub_Nm * self._yaw_rates[: self._count, self._bodies])
         self._slipped |= (found.contact_state == 1).any(axis=0)
         self._loss_J = np.cumsum(np.vstack([self._loss_J, losses]), axis=0)[-1]
         self._count = 0

@@ -178,7 +178,7 @@ class Rows(KeptRows):
         super().__init__(kept, trailers_of(scene, vehicle), inputs, row_length(core))
         names = {signal.partition("[")[0] for signal in kept}
         self._friction = float(scene.vehicle["friction_coefficient"])
-        self._of_load = "no_slip_margin_N" in names or bool(self._friction)
+        self._of_load = scene.wheel_count > 0 and ("no_slip_margin_N" in names or bool(self._friction))
         self._accelerates = "acceleration_body_m_per_s2" in names or bool(self._of_load and self._loads.height_m)
         of_ground = bool(names & {*OF_REACTIONS, "hinge_force_along_N", "hinge_force_across_N"})
         self._motions, self._accelerations = Structs(core, MOTION, ROOM), np.zeros((ROOM, 2))

@@ -85,6 +85,8 @@ class PairedBus(can.BusABC):
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """The frame is at the other end at once; neither end changes it."""
+        if self._is_shutdown:
+            raise can.CanOperationError("this end of the bus was shut down")
         self._other._arrived.append(msg)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
