@@ -110,15 +110,11 @@ def members_of(rows: Any, lengths: Mapping[str, int | None]) -> dict[str, Any]:
     """Members of a struct, an item of `Structs.table`, or of several, cut to the items that there are.
 
     Arrays of one struct are copies, so that who keeps one does not keep the others; of several they are views."""
-    each_row = (slice(None),) * rows.ndim
-    found = {name: _number_or_column(rows[name]) if length is None else rows[name][(*each_row, slice(length))]
-             for name, length in lengths.items()}
-    return found if rows.ndim else {name: value.copy() if isinstance(value, np.ndarray) else value
-                                    for name, value in found.items()}
-
-
-def _number_or_column(value: Any) -> Any:
-    return value.astype(float) if value.ndim else float(value)
+    if rows.ndim:
+        return {name: rows[name].astype(float) if length is None else rows[name][:, :length]
+                for name, length in lengths.items()}
+    return {name: float(rows[name]) if length is None else rows[name][:length].copy()
+            for name, length in lengths.items()}
 
 
 NEEDS_OF_HINGES = {"hinge_voltage_V": "a motor", "hinge_torque_Nm": 'a hinge that is "free" or "motor"',
@@ -395,8 +391,7 @@ class ArticulatedPlant(OwnMemory):
 
     def hinge_angles(self) -> list[float]:
         """The angles of `motion` alone."""
-        angles = self.core.ffi.unpack(self.c_motion().hinge_angle_rad, self.vehicle.body_count)
-        return [float(angle) for angle in angles]
+        return list(self.core.ffi.unpack(self.c_motion().hinge_angle_rad, self.vehicle.body_count))
 
     def reactions(self, inputs: Any = None, normal_N: Sequence[float] | np.ndarray | None = None
                   ) -> ArticulatedReactions:
